@@ -1,0 +1,30 @@
+#include "command.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void show(const ck_Comparison *comparison) {
+	ck_print_summary(comparison);
+	printf("\n");
+}
+
+static void print_help(void) {
+	printf("clothcheck compare [SCENE...] [options]\n\nRuns all engines on all scenes (without SCENE: scenes/*.yaml) and writes\n"
+		   "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (usually out).\n\n%s", ck_arguments_help);
+}
+
+int ck_command_compare(int argc, char **argv) {
+	for (int i = 1; i < argc; i++)
+		if (!strcmp(argv[i], "--help")) {
+			print_help();
+			return CK_EXIT_OK;
+		}
+	ck_Error error = {0};
+	ck_Arguments arguments;
+	ck_Status status = ck_arguments_read(&arguments, argc, argv, &error);
+	if (!arguments.out) arguments.out = "out";
+	int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
+	if (result == CK_EXIT_OK) printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second (median).\nCSVs: %s\n", arguments.out);
+	ck_arguments_free(&arguments);
+	return result;
+}

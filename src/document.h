@@ -1,0 +1,33 @@
+// A YAML file with the place of every value, so that an error can say line and column.
+#ifndef CK_DOCUMENT_H
+#define CK_DOCUMENT_H
+
+#include "status.h"
+
+#include <stddef.h>
+#include <yaml.h>
+
+// The largest scene file that is read. A 100×100 network with every bar listed is below 1 MB.
+#define CK_DOCUMENT_MAX_BYTES (16u << 20)
+
+typedef struct ck_Document {
+	char *path;
+	unsigned char *text;
+	size_t length;
+	yaml_document_t yaml;
+	int has_yaml;
+} ck_Document;
+
+// Reads and parses a file. Refuses what is not a regular file, is empty, or is larger than CK_DOCUMENT_MAX_BYTES.
+// Errors: CK_BAD_INPUT with file:line:column, CK_NO_MEMORY, CK_IO. Free with ck_document_free in any case.
+ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error);
+void ck_document_free(ck_Document *document);
+
+// The node at a dotted path such as "network.bars[3]". Where the path ends early, its deepest existing part.
+yaml_node_t *ck_document_find(const ck_Document *document, const char *path);
+
+// Fails with "file:line:column: message", the place being that of node (NULL: the file alone).
+ck_Status ck_document_fail(const ck_Document *document, const yaml_node_t *node, ck_Error *error, const char *format, ...)
+	__attribute__((format(printf, 4, 5)));
+
+#endif

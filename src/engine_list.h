@@ -1,0 +1,20 @@
+// Every engine that is linked in.
+#ifndef CK_ENGINE_LIST_H
+#define CK_ENGINE_LIST_H
+
+#include "engine.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+extern const ck_Engine ck_native_verlet, ck_native_bars, ck_native_xpbd;
+extern const ck_Engine ck_bullet_pbd, ck_bullet_implicit;
+extern const ck_Engine ck_ode_quick, ck_ode_direct;
+extern const ck_Engine ck_null_engine;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

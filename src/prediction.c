@@ -1,0 +1,217 @@
+#include "prediction.h"
+
+#include "vector.h"
+
+#include <string.h>
+
+typedef struct Theory {
+	ck_Method method;
+	const char *truth;
+	// Writes the state at time s; false where the theory does not reach.
+	bool (*at)(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity);
+} Theory;
+
+static double time_step(const ck_Model *model, const ck_Settings *used) {
+	return model->step / used->substeps;
+}
+
+// A second-order scheme falls exactly.
+static bool fall_exactly(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	(void)used;
+	return ck_truth_form_find("free_fall")->at(model, time, position, velocity, NULL) == CK_OK;
+}
+
+// Symplectic or backward Euler adds the step's whole g·dt before it moves: ahead by g·t·dt/2.
+static bool fall_ahead(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	if (!fall_exactly(model, used, time, position, velocity)) return false;
+	for (int i = 0; i < model->particle_count; i++) {
+		double field[3];
+		ck_model_field(model, i, field);
+		ck_add_scaled(position + 3 * i, 0.5 * time * time_step(model, used), field);
+	}
+	return true;
+}
+
+// One substep of a damped oscillator: u, v and the acceleration that the method carries over, in m, m/s and m/s².
+typedef struct Oscillator {
+	double k, c, m, dt;
+	uint32_t iterations;
+	double u, v, a;
+} Oscillator;
+
+// m·v' = m·v − dt·(k·u' + c·v'), u' = u + dt·v'.
+static void backward_euler(Oscillator *o) {
+	o->v = (o->m * o->v - o->dt * o->k * o->u) / (o->m + o->dt * o->c + o->dt * o->dt * o->k);
+	o->u += o->dt * o->v;
+}
+
+// u' = u + dt·v + dt²·a/2, a' = a(u', v + dt·a), v' = v + dt·(a + a')/2; a' serves the next substep too.
+static void velocity_verlet(Oscillator *o) {
+	double a = o->a;
+	o->u += o->dt * o->v + 0.5 * o->dt * o->dt * a;
+	o->a = -(o->k * o->u + o->c * (o->v + o->dt * a)) / o->m;
+	o->v += 0.5 * o->dt * (a + o->a);
+}
+
+// Bullet's link: damping explicit, then each iteration takes the share κ off what is left.
+static void bullet_link(Oscillator *o) {
+	double q = o->k * o->dt * o->dt / o->m;
+	double left = o->iterations == 1 ? 1 - fmin(1, q / (1 + q / 2)) : 1 / (1 + q);
+	double moved = left * (o->u + o->dt * o->v * (1 - o->dt * o->c / o->m));
+	o->v = (moved - o->u) / o->dt;
+	o->u = moved;
+}
+
+static bool oscillate(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity, void (*substep)(Oscillator *)) {
+	const ck_Spring *spring = &model->springs[0];
+	double along[3], dt = time_step(model, used);
+	ck_subtract(along, model->position + 3, model->position);
+	for (int axis = 0; axis < 3; axis++) along[axis] /= spring->rest;
+	Oscillator o = {spring->stiffness, spring->damping, model->mass[1], dt, used->iterations, .v = ck_dot(model->velocity + 3, along)};
+	o.a = -o.c * o.v / o.m;
+	for (long step = lround(time / dt); step > 0; step--) substep(&o);
+	memcpy(position, model->position, 6 * sizeof(double));
+	memset(velocity, 0, 6 * sizeof(double));
+	ck_add_scaled(position + 3, o.u, along);
+	ck_add_scaled(velocity + 3, o.v, along);
+	return true;
+}
+
+static bool oscillate_verlet(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	return oscillate(model, used, time, position, velocity, velocity_verlet);
+}
+
+// One spring along one line: XPBD's only constraint, Bullet's Newton step and ODE's joint all solve backward Euler exactly.
+static bool oscillate_backward(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	return oscillate(model, used, time, position, velocity, backward_euler);
+}
+
+static bool oscillate_bullet_link(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	return oscillate(model, used, time, position, velocity, bullet_link);
+}
+
+// One link of a chain that rests under Gauss–Seidel sweeps from the pin down, one sweep a substep.
+typedef struct Link {
+	const ck_Spring *spring;
+	double weight;     // w_a + w_b, 1/kg
+	double multiplier; // λ = dt²·T: what the sweep has to correct by, kg·m
+	double ahead;      // by how much the link is longer than at rest when its turn comes, m: its upper end has just been
+					   // pulled up by w·λ of the link above, or is the pin, from which all else has fallen by g·dt²
+	double dt;
+} Link;
+
+// A bar takes off all of its error: λ·W = s + ahead.
+static double bar_stretch(const Link *link) {
+	return link->multiplier * link->weight - link->ahead;
+}
+
+// λ·((1 + γ)·W + α) = s + (1 + γ)·ahead: damping sees the link on its way back and softens it by (1 + γ).
+static double xpbd_stretch(const Link *link) {
+	double stiffness = link->spring->stiffness, gamma = link->spring->damping / (stiffness * link->dt);
+	double compliance = 1 / (stiffness * link->dt * link->dt);
+	return link->multiplier * ((1 + gamma) * link->weight + compliance) - (1 + gamma) * link->ahead;
+}
+
+// λ·W/κ = f(l + ahead)/h(l), with Bullet's f(x) = x·(x² − L²)/(x² + L²) and the Hooke correction h(l) = l·(l + L)/(l² + L²)
+// taken before the step. Solved for l by fixed point: f is nearly linear, each round gains a digit or more.
+static double bullet_stretch(const Link *link) {
+	double rest = link->spring->rest, q = link->spring->stiffness * link->dt * link->dt * link->weight;
+	double kappa = isinf(q) ? 1 : fmin(1, q / (1 + q / 2));
+	double wanted = link->multiplier * link->weight / kappa, stretch = wanted - link->ahead;
+	for (int round = 0; round < 50; round++) {
+		double l = rest + stretch, x = l + link->ahead;
+		double f = x * (x * x - rest * rest) / (x * x + rest * rest), h = l * (l + rest) / (l * l + rest * rest);
+		stretch += wanted - f / h;
+	}
+	return stretch;
+}
+
+// With n > 1 sweeps each adds a share, and 1/k_eff = 1/k + w·dt²/n, good to about 1/N.
+static double swept_stretch(const Link *link, uint32_t iterations) {
+	return link->multiplier * (1 / (link->spring->stiffness * link->dt * link->dt) + 0.5 * link->weight / iterations);
+}
+
+// The whole chain at rest. eased: what the method's drag takes off the field's push even at rest.
+static bool hang(const ck_Model *model, const ck_Settings *used, double eased, double *position, double *velocity, double (*stretch)(const Link *)) {
+	double dt = time_step(model, used), push = dt * dt * eased, below = 0, above = 0, down[3], g = ck_length(model->gravity);
+	if (model->terms & CK_TERM_FORCE) return false;
+	for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;
+	for (int i = 1; i < model->particle_count; i++) below += model->mass[i] * g;
+	memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+	memcpy(position, model->position, 3 * sizeof(double));
+	for (int i = 1; i < model->particle_count; i++) {
+		double upper = ck_model_inverse_mass(model, i - 1);
+		Link link = {&model->springs[i - 1], upper + ck_model_inverse_mass(model, i), push * below, push * (upper > 0 ? upper * above : g), dt};
+		memcpy(position + 3 * i, position + 3 * i - 3, 3 * sizeof(double));
+		ck_add_scaled(position + 3 * i, link.spring->rest + (used->iterations == 1 ? stretch(&link) : swept_stretch(&link, used->iterations)), down);
+		above = below;
+		below -= model->mass[i] * g;
+	}
+	return true;
+}
+
+static bool hang_bars(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	(void)time;
+	double eased = 1 / (1 + 0.5 * model->drag * time_step(model, used));
+	return (used->iterations == 1 || (model->terms & CK_TERM_RIGID)) && hang(model, used, eased, position, velocity, bar_stretch);
+}
+
+static bool hang_xpbd(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	(void)time;
+	return hang(model, used, 1, position, velocity, xpbd_stretch);
+}
+
+static bool hang_bullet(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	(void)time;
+	return used->iterations == 1 && hang(model, used, 1, position, velocity, bullet_stretch);
+}
+
+// Solves for the velocity at the end of the step, or steps by forces: at rest the stretch is exact.
+static bool hang_exactly(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
+	(void)used;
+	return ck_truth_form_find("vertical_chain")->at(model, time, position, velocity, NULL) == CK_OK;
+}
+
+static const Theory theories[] = {
+	{CK_METHOD_VELOCITY_VERLET, "free_fall", fall_exactly},
+	{CK_METHOD_STOERMER_BARS, "free_fall", fall_exactly},
+	{CK_METHOD_XPBD, "free_fall", fall_ahead},
+	{CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
+	{CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
+	{CK_METHOD_SEMI_IMPLICIT_ODE, "free_fall", fall_ahead},
+	{CK_METHOD_VELOCITY_VERLET, "oscillator", oscillate_verlet},
+	{CK_METHOD_XPBD, "oscillator", oscillate_backward},
+	{CK_METHOD_BULLET_PBD, "oscillator", oscillate_bullet_link},
+	{CK_METHOD_IMPLICIT_EULER, "oscillator", oscillate_backward},
+	{CK_METHOD_SEMI_IMPLICIT_ODE, "oscillator", oscillate_backward},
+	{CK_METHOD_VELOCITY_VERLET, "vertical_chain", hang_exactly},
+	{CK_METHOD_STOERMER_BARS, "vertical_chain", hang_bars},
+	{CK_METHOD_XPBD, "vertical_chain", hang_xpbd},
+	{CK_METHOD_BULLET_PBD, "vertical_chain", hang_bullet},
+	{CK_METHOD_IMPLICIT_EULER, "vertical_chain", hang_exactly},
+	{CK_METHOD_SEMI_IMPLICIT_ODE, "vertical_chain", hang_exactly},
+};
+
+static const Theory *find_theory(ck_Method method, const ck_Truth *truth) {
+	for (size_t i = 0; truth->form && i < sizeof theories / sizeof *theories; i++)
+		if (theories[i].method == method && !strcmp(theories[i].truth, truth->form->name)) return &theories[i];
+	return NULL;
+}
+
+ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine, const ck_Settings *used,
+							   const ck_Truth *truth, ck_Error *error) {
+	*prediction = (ck_Reference){.is_static = truth->reference.is_static};
+	const Theory *theory = find_theory(engine->method, truth);
+	if (!theory) return CK_OK;
+	ck_Trajectory *path = &prediction->trajectory;
+	ck_Status status = ck_trajectory_create(path, model, error);
+	int frames = prediction->is_static ? 1 : model->frame_count + 1;
+	for (int frame = 0; frame < frames && !status; frame++) {
+		if (!theory->at(model, used, frame * model->step, ck_trajectory_position(path, frame), ck_trajectory_velocity(path, frame))) {
+			path->frame_count = 0;
+			break;
+		}
+		path->frame_count = frame + 1;
+	}
+	return status;
+}

@@ -1,0 +1,17 @@
+// What a method's own theory says an engine should show, computed without the engine: a deviation that it explains is a
+// known artefact of the method, one that it does not is wrong physics or a bug.
+#ifndef CK_PREDICTION_H
+#define CK_PREDICTION_H
+
+#include "engine.h"
+#include "metric.h"
+#include "truth.h"
+
+// Samples the predicted path of an engine at the model's frames. Without a theory for this method and truth, the
+// prediction stays empty (frame_count 0), which is not an error.
+//   used  the settings that the engine ran with
+// Errors: CK_NO_MEMORY. Free with ck_trajectory_free in any case.
+ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine, const ck_Settings *used,
+							   const ck_Truth *truth, ck_Error *error);
+
+#endif

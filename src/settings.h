@@ -1,0 +1,13 @@
+// What a user may set of an engine. 0 means: the engine's own documented rule decides.
+#ifndef CK_SETTINGS_H
+#define CK_SETTINGS_H
+
+#include <stdint.h>
+
+typedef struct ck_Settings {
+	uint32_t substeps;   // steps of the engine per frame (time.step of the scene)
+	uint32_t iterations; // solver iterations per substep, where the method has them
+	double relaxation;   // over-relaxation of an iterative solver, usually 1 … 1.5
+} ck_Settings;
+
+#endif

@@ -1,0 +1,44 @@
+// What is known of a model's time scales before any engine runs.
+#ifndef CK_STABILITY_H
+#define CK_STABILITY_H
+
+#include "model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// An upper bound of the highest angular frequency of the network at its start, in rad/s; 0 without springs.
+// max_i √(2·w_i·λ_max(Σ k·n·nᵀ)) over a particle's springs: within 0.6 % for a cloth at rest.
+// Cost: one pass over springs. Fails with CK_NO_MEMORY only.
+ck_Status ck_stability_frequency(const ck_Model *model, double *frequency);
+
+// The largest c/k of its springs, in s.
+double ck_stability_damping_time(const ck_Model *model);
+
+// The largest k·(w_a + w_b) of its springs, in 1/s²: a = that·dt² is what position-based methods scale with.
+double ck_stability_stiffness_rate(const ck_Model *model);
+
+// The sum of |gravity·m + force| over particles that are not pinned, in N; 0 without pins.
+// No spring of a hanging body carries much more than this at rest.
+double ck_stability_load(const ck_Model *model);
+
+// The largest √(m·d/load): where a spring under full tension is stepped explicitly across its line, no longer step is
+// stable. In s; INFINITY without load.
+double ck_stability_transverse_time(const ck_Model *model);
+
+// The largest 1/m of particles that are not pinned, in 1/kg.
+double ck_stability_lightness(const ck_Model *model);
+
+// The longest step, in s, at which bars held by position projection stretch by no more than 0.1 % under the whole load,
+// load·w·dt²/iterations; at most 1/240 s. Substeps act squared where iterations act once.
+double ck_stability_bar_time(const ck_Model *model, uint32_t iterations);
+
+// How many equal substeps of at most limit seconds make one frame: at least 1, at most 100000.
+uint32_t ck_stability_substeps(const ck_Model *model, double limit);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,26 @@
+// The six CSV files of a comparison.
+#ifndef CK_TABLES_H
+#define CK_TABLES_H
+
+#include "comparison.h"
+#include "csv_file.h"
+
+typedef enum ck_TableName { CK_RUNS, CK_METRICS, CK_DEVIATIONS, CK_LEDGER, CK_SERIES, CK_MACHINE, CK_TABLE_COUNT } ck_TableName;
+
+typedef struct ck_Tables {
+	ck_Csv csv[CK_TABLE_COUNT];
+} ck_Tables;
+
+// Starts all six in a directory, which is made where it is missing.
+// Errors: CK_IO, CK_NO_MEMORY. End with ck_tables_close or ck_tables_discard in any case.
+ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *error);
+
+// Adds the rows of one finished comparison. options are those it ran with.
+void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options);
+
+// Adds what is known of the machine, and gives the six files their names. Errors: CK_IO.
+ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error);
+
+void ck_tables_discard(ck_Tables *tables);
+
+#endif

@@ -1,0 +1,30 @@
+// Positions and velocities of all particles at every frame of a run.
+#ifndef CK_TRAJECTORY_H
+#define CK_TRAJECTORY_H
+
+#include "model.h"
+#include "status.h"
+
+#include <stddef.h>
+
+typedef struct ck_Trajectory {
+	int particle_count;
+	int frame_count; // frames written, the start among them
+	int capacity;
+	double step;  // s between frames
+	double *data; // [capacity][2][3*n] positions, then velocities; shared with child processes
+	size_t bytes;
+} ck_Trajectory;
+
+// Room for a model's start and all its frames, in memory that a child process can fill.
+// Errors: CK_NO_MEMORY. Free with ck_trajectory_free in any case.
+ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model, ck_Error *error);
+
+// Accepts a zeroed trajectory.
+void ck_trajectory_free(ck_Trajectory *trajectory);
+
+// [3*n] m and m/s of one frame.
+double *ck_trajectory_position(const ck_Trajectory *trajectory, int frame);
+double *ck_trajectory_velocity(const ck_Trajectory *trajectory, int frame);
+
+#endif

@@ -1,0 +1,19 @@
+// The closed forms behind the truth table. All have the signature of ck_TruthForm.at.
+#ifndef CK_TRUTH_FORMS_H
+#define CK_TRUTH_FORMS_H
+
+#include "model.h"
+
+// A rope hanging from its first particle, at rest along gravity.
+ck_Status ck_truth_vertical_chain(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+
+// A rope pinned at both ends, at rest.
+ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+
+// Any body without pins, drag and colliders, whose springs start at rest.
+ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+
+// Two particles joined by a spring, the first pinned, the second thrown along it; no gravity, force or drag.
+ck_Status ck_truth_oscillator(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+
+#endif
