@@ -34,7 +34,7 @@ static bool fall_ahead(const ck_Model *model, const ck_Settings *used, double ti
 
 // One substep of a damped oscillator: u, v and the acceleration that the method carries over, in m, m/s and m/s².
 typedef struct Oscillator {
-	double k, c, m, dt;
+	double k, c, m, rest, dt;
 	uint32_t iterations;
 	double u, v, a;
 } Oscillator;
@@ -53,11 +53,24 @@ static void velocity_verlet(Oscillator *o) {
 	o->v += 0.5 * o->dt * (a + o->a);
 }
 
-// Bullet's link: damping explicit, then each iteration takes the share κ off what is left.
+// Bullet's link answers an error x − L with f(x) = x·(x² − L²)/(x² + L²), and the bridge divides it by
+// h(l) = l·(l + L)/(l² + L²) of the length before the step, so that f/h is Hooke's l − L where both lengths agree.
+static double bullet_error(double x, double l, double rest) {
+	double f = x * (x * x - rest * rest) / (x * x + rest * rest), h = l * (l + rest) / (l * l + rest * rest);
+	return f / h;
+}
+
+// The share of the error that one of the bridge's sweeps takes off.
+static double bullet_share(double q, uint32_t iterations) {
+	if (isinf(q)) return 1;
+	return iterations == 1 ? fmin(1, q / (1 + q / 2)) : 1 - pow(1 + q, -1.0 / iterations);
+}
+
+// Damping explicit, then each sweep takes its share off what is left.
 static void bullet_link(Oscillator *o) {
-	double q = o->k * o->dt * o->dt / o->m;
-	double left = o->iterations == 1 ? 1 - fmin(1, q / (1 + q / 2)) : 1 / (1 + q);
-	double moved = left * (o->u + o->dt * o->v * (1 - o->dt * o->c / o->m));
+	double share = bullet_share(o->k * o->dt * o->dt / o->m, o->iterations);
+	double moved = o->u + o->dt * o->v * (1 - o->dt * o->c / o->m);
+	for (uint32_t i = 0; i < o->iterations; i++) moved -= share * bullet_error(o->rest + moved, o->rest + o->u, o->rest);
 	o->v = (moved - o->u) / o->dt;
 	o->u = moved;
 }
@@ -67,7 +80,7 @@ static bool oscillate(const ck_Model *model, const ck_Settings *used, double tim
 	double along[3], dt = time_step(model, used);
 	ck_subtract(along, model->position + 3, model->position);
 	for (int axis = 0; axis < 3; axis++) along[axis] /= spring->rest;
-	Oscillator o = {spring->stiffness, spring->damping, model->mass[1], dt, used->iterations, .v = ck_dot(model->velocity + 3, along)};
+	Oscillator o = {spring->stiffness, spring->damping, model->mass[1], spring->rest, dt, used->iterations, .v = ck_dot(model->velocity + 3, along)};
 	o.a = -o.c * o.v / o.m;
 	for (long step = lround(time / dt); step > 0; step--) substep(&o);
 	memcpy(position, model->position, 6 * sizeof(double));
@@ -112,17 +125,11 @@ static double xpbd_stretch(const Link *link) {
 	return link->multiplier * ((1 + gamma) * link->weight + compliance) - (1 + gamma) * link->ahead;
 }
 
-// λ·W/κ = f(l + ahead)/h(l), with Bullet's f(x) = x·(x² − L²)/(x² + L²) and the Hooke correction h(l) = l·(l + L)/(l² + L²)
-// taken before the step. Solved for l by fixed point: f is nearly linear, each round gains a digit or more.
+// λ·W/κ = f(l + ahead)/h(l), solved for l by fixed point: f is nearly linear, each round gains a digit or more.
 static double bullet_stretch(const Link *link) {
-	double rest = link->spring->rest, q = link->spring->stiffness * link->dt * link->dt * link->weight;
-	double kappa = isinf(q) ? 1 : fmin(1, q / (1 + q / 2));
-	double wanted = link->multiplier * link->weight / kappa, stretch = wanted - link->ahead;
-	for (int round = 0; round < 50; round++) {
-		double l = rest + stretch, x = l + link->ahead;
-		double f = x * (x * x - rest * rest) / (x * x + rest * rest), h = l * (l + rest) / (l * l + rest * rest);
-		stretch += wanted - f / h;
-	}
+	double rest = link->spring->rest, share = bullet_share(link->spring->stiffness * link->dt * link->dt * link->weight, 1);
+	double wanted = link->multiplier * link->weight / share, stretch = wanted - link->ahead;
+	for (int round = 0; round < 50; round++) stretch += wanted - bullet_error(rest + stretch + link->ahead, rest + stretch, rest);
 	return stretch;
 }
 
