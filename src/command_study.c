@@ -1,9 +1,11 @@
 #include "command.h"
+#include "path.h"
 #include "tables.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 int ck_command_fail(ck_Status status, const ck_Error *error) {
@@ -30,6 +32,8 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
 	ck_CompareOptions options = arguments->options;
 	bool terminal = isatty(STDERR_FILENO);
 	if (terminal) options.progress = show_progress;
+	char *cache = arguments->out ? ck_path_join(arguments->out, "truths", "") : NULL;
+	options.cache = cache;
 	ck_Status status = CK_OK;
 	for (int i = 0; i < arguments->scene_count && !status; i++) {
 		status = ck_comparison_run(&comparisons[i], &options, error);
@@ -38,6 +42,7 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
 		if (!status) show(&comparisons[i]);
 		ck_comparison_free_runs(&comparisons[i]);
 	}
+	free(cache);
 	return status;
 }
 

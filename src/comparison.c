@@ -3,6 +3,7 @@
 #include "random.h"
 #include "verdict.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 static const ck_Engine *all_engines[CK_SCENE_MAX_ENGINES];
@@ -38,7 +39,7 @@ ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Err
 	if (!status) status = check_measure(comparison, error);
 	if (status) return status;
 	ck_Error why = {0};
-	status = ck_truth_create(&comparison->truth, &comparison->model, &why);
+	status = ck_truth_check(&comparison->model, &why);
 	if (status == CK_BAD_INPUT) return ck_scene_fail(&comparison->scene, "truth", error, "%s", why.message);
 	return status ? ck_fail(error, status, "%s", why.message) : CK_OK;
 }
@@ -100,7 +101,9 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
 	comparison->runs = calloc((size_t)options->engine_count + 1, sizeof *comparison->runs);
 	comparison->predictions = calloc((size_t)options->engine_count + 1, sizeof *comparison->predictions);
 	if (!comparison->runs || !comparison->predictions) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	ck_Status status = measure_all(comparison, options, error);
+	if (options->progress) options->progress(comparison->model.name, "truth", "finding");
+	ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, error);
+	if (!status) status = measure_all(comparison, options, error);
 	if (!status) status = time_all(comparison, options, error);
 	return status;
 }
@@ -119,11 +122,11 @@ void ck_comparison_free_runs(ck_Comparison *comparison) {
 	comparison->runs = NULL;
 	comparison->predictions = NULL;
 	comparison->run_count = 0;
+	ck_truth_free(&comparison->truth);
 }
 
 void ck_comparison_free(ck_Comparison *comparison) {
 	ck_comparison_free_runs(comparison);
-	ck_truth_free(&comparison->truth);
 	ck_model_free(&comparison->model);
 	ck_scene_free(&comparison->scene);
 	*comparison = (ck_Comparison){0};

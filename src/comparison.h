@@ -23,6 +23,7 @@ typedef struct ck_CompareOptions {
 	double budget; // s of CPU time per timed repeat at most
 	uint64_t seed; // of the order in which engines are timed
 	ck_Limits limits;
+	const char *cache; // directory of computed truths; NULL: none
 	// Called before each run with what is about to happen; may be NULL.
 	void (*progress)(const char *scene, const char *engine, const char *doing);
 } ck_CompareOptions;
@@ -40,14 +41,14 @@ typedef struct ck_Comparison {
 	int run_count;
 } ck_Comparison;
 
-// Loads and compiles a scene and its truth; runs nothing. path must outlive the comparison.
+// Loads and compiles a scene and checks that it has the truth it names; runs nothing. path must outlive the comparison.
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY, CK_IO. Free with ck_comparison_free in any case.
 ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Error *error);
 
-// Runs every engine. Errors: CK_NO_MEMORY, CK_IO. How the engines fared is in the runs.
+// Finds the truth and runs every engine. Errors: CK_NO_MEMORY, CK_IO. How the engines fared is in the runs.
 ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error);
 
-// Frees what the runs hold, and keeps the scene. Accepts a zeroed comparison.
+// Frees what the runs and the truth hold, and keeps the scene. Accepts a zeroed comparison.
 void ck_comparison_free_runs(ck_Comparison *comparison);
 void ck_comparison_free(ck_Comparison *comparison);
 

@@ -1,5 +1,7 @@
 #include "csv_file.h"
 
+#include "path.h"
+
 #include <assert.h>
 #include <csv.h>
 #include <errno.h>
@@ -9,15 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-static char *join(const char *directory, const char *name, const char *suffix) {
-	size_t size = strlen(directory) + strlen(name) + strlen(suffix) + 2;
-	char *path = malloc(size);
-	if (path) snprintf(path, size, "%s/%s%s", directory, name, suffix);
-	return path;
-}
-
 ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const char *name, const char *const *columns, ck_Error *error) {
-	*csv = (ck_Csv){.path = join(directory, name, ""), .part = join(directory, name, ".part")};
+	*csv = (ck_Csv){.path = ck_path_join(directory, name, ""), .part = ck_path_join(directory, name, ".part")};
 	if (!csv->path || !csv->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
 	csv->file = fopen(csv->part, "w");
 	if (!csv->file) return ck_fail(error, CK_IO, "%s: %s", csv->part, strerror(errno));

@@ -67,13 +67,13 @@ static double position_rms_at(const ck_Model *model, const ck_Trajectory *trajec
 	return sqrt(mean_square(model, ck_trajectory_position(trajectory, frame), reference_position(reference, frame))) / model->size;
 }
 
-// Against a truth at rest the last frame counts, against a moving one every frame.
+// Against a truth at rest the last frame counts, against a moving one every frame up to its horizon.
 static double position_rms_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
 	if (reference->is_static || !reference->trajectory.frame_count) return position_rms_at(model, trajectory, last_frame(trajectory), reference);
 	double sum = 0;
-	for (int frame = 0; frame < trajectory->frame_count; frame++)
+	for (int frame = 0; frame <= reference->horizon; frame++)
 		sum += mean_square(model, ck_trajectory_position(trajectory, frame), reference_position(reference, frame));
-	return sqrt(sum / trajectory->frame_count) / model->size;
+	return sqrt(sum / (reference->horizon + 1)) / model->size;
 }
 
 static double position_rms_between(const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other) {
@@ -156,6 +156,97 @@ static double jitter_over(const ck_Model *model, const ck_Trajectory *trajectory
 	return sqrt(sum / (last - first)) / trajectory->step / ck_length(field);
 }
 
+// Where the body swings: its centre of mass along the start velocity, or without one along its level offset from the pins.
+static bool swing_direction(const ck_Model *model, double *direction, double *origin) {
+	double center[3] = {0}, pins[3] = {0}, down[3], mass = ck_model_free_mass(model);
+	memset(direction, 0, 3 * sizeof(double));
+	for (int i = 0; i < model->particle_count; i++) {
+		if (!model->pinned[i]) ck_add_scaled(center, model->mass[i] / mass, model->position + 3 * i);
+		if (!model->pinned[i]) ck_add_scaled(direction, model->mass[i] / mass, model->velocity + 3 * i);
+		if (model->pinned[i]) ck_add_scaled(pins, 1.0 / model->pin_count, model->position + 3 * i);
+	}
+	memcpy(origin, center, sizeof center);
+	if (!(ck_length(direction) > 0) && fall_direction(model, down)) {
+		ck_subtract(direction, center, pins);
+		ck_add_scaled(direction, -ck_dot(direction, down), down);
+		memcpy(origin, pins, sizeof pins);
+	}
+	return model->pin_count && ck_length(direction) > 1e-9 * model->size;
+}
+
+// Where the cubic through two frames' values and rates crosses 0, as a share of the step. Its error is of fourth order.
+static double crossing(double from, double to, double from_rate, double to_rate) {
+	double low = 0, high = 1;
+	for (int i = 0; i < 60; i++) {
+		double t = 0.5 * (low + high), s = 1 - t;
+		double value = s * s * (1 + 2 * t) * from + t * t * (3 - 2 * t) * to + s * s * t * from_rate - t * t * s * to_rate;
+		if ((value > 0) == (from > 0))
+			low = t;
+		else
+			high = t;
+	}
+	return 0.5 * (low + high);
+}
+
+// Twice the mean time between the centre of mass's passes through rest; none with fewer than three of them.
+static double period_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+	(void)reference;
+	double direction[3], origin[3], before = 0, rate_before = 0, first = 0, last = 0, mass = ck_model_free_mass(model);
+	int passes = 0;
+	if (!swing_direction(model, direction, origin)) return NAN;
+	for (int frame = 0; frame < trajectory->frame_count; frame++) {
+		double now = -ck_dot(origin, direction), rate = 0;
+		for (int i = 0; i < model->particle_count; i++) {
+			if (model->pinned[i]) continue;
+			now += model->mass[i] / mass * ck_dot(ck_trajectory_position(trajectory, frame) + 3 * i, direction);
+			rate += model->mass[i] / mass * ck_dot(ck_trajectory_velocity(trajectory, frame) + 3 * i, direction) * trajectory->step;
+		}
+		// a start at rest's place is no pass: it would be found by rounding only
+		if (frame > 1 && (now > 0) != (before > 0)) {
+			last = (frame - 1 + crossing(before, now, rate_before, rate)) * trajectory->step;
+			if (!passes++) first = last;
+		}
+		before = now;
+		rate_before = rate;
+	}
+	return passes > 2 ? 2 * (last - first) / (passes - 1) : NAN;
+}
+
+// rms difference of a frame's value to that of a moving truth, over the whole run: points may have parted long before.
+static double path_rms(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference,
+					   double (*value)(const ck_Model *model, const ck_Trajectory *trajectory, int frame)) {
+	double sum = 0;
+	if (reference->is_static || reference->trajectory.frame_count < trajectory->frame_count) return NAN;
+	for (int frame = 0; frame < trajectory->frame_count; frame++) {
+		double off = value(model, trajectory, frame) - value(model, &reference->trajectory, frame);
+		sum += off * off;
+	}
+	return sqrt(sum / trajectory->frame_count);
+}
+
+static double sag_of(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+	return sag_at(model, trajectory, frame, NULL);
+}
+
+static double sag_path_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+	return path_rms(model, trajectory, reference, sag_of);
+}
+
+static double energy_of(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+	Energy energy = energy_at(model, trajectory, frame);
+	return energy.kinetic + energy.elastic + energy.field;
+}
+
+// In units of the energy that the truth turns over: its largest drop of potential, or what it has at the start.
+static double energy_path_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+	double off = path_rms(model, trajectory, reference, energy_of);
+	Energy start = energy_at(model, trajectory, 0);
+	double scale = start.kinetic + start.elastic;
+	for (int frame = 0; frame < reference->trajectory.frame_count && !isnan(off); frame++)
+		scale = fmax(scale, -energy_at(model, &reference->trajectory, frame).field);
+	return scale > 0 ? off / scale : NAN;
+}
+
 static const ck_Metric metrics[] = {
 	{"sag", "1", "Largest drop below the highest pin / size", CK_TRUTH_OF_STATE, .at = sag_at},
 	{"stretch_max", "1", "Largest spring strain", CK_TRUTH_OF_STATE, .at = stretch_max_at},
@@ -163,6 +254,9 @@ static const ck_Metric metrics[] = {
 	{"position_rms", "1", "Root mean square distance to the truth / size", CK_TRUTH_ZERO, position_rms_at, position_rms_over, position_rms_between},
 	{"energy_drift", "1", "Gained energy / largest potential drop", CK_TRUTH_ZERO, .over = energy_drift_over},
 	{"settle_time", "s", "Time after which the body stays still", CK_TRUTH_NONE, .over = settle_time_over},
+	{"sag_path", "1", "Root mean square difference of sag(t) to the truth's, whole run", CK_TRUTH_ZERO, .over = sag_path_over},
+	{"energy_path", "1", "Root mean square difference of energy(t) to the truth's / what it turns over", CK_TRUTH_ZERO, .over = energy_path_over},
+	{"period", "s", "Time of one swing of the centre of mass", CK_TRUTH_OF_STATE, .over = period_over},
 	{"jitter", "1", "Root mean square acceleration at the end / g", CK_TRUTH_ZERO_STILL, .over = jitter_over},
 };
 
@@ -193,6 +287,7 @@ double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_
 
 double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_Reference *reference) {
 	if (!reference->trajectory.frame_count || metric->truth == CK_TRUTH_NONE) return NAN;
+	if (metric->truth == CK_TRUTH_OF_STATE && reference->is_static && !metric->at) return NAN;
 	if (metric->truth == CK_TRUTH_OF_STATE) return ck_metric_value(metric, model, &reference->trajectory, reference);
 	return metric->truth == CK_TRUTH_ZERO || reference->is_static ? 0 : NAN;
 }

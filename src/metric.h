@@ -9,6 +9,7 @@
 typedef struct ck_Reference {
 	ck_Trajectory trajectory; // frame_count 0: there is none
 	bool is_static;
+	int horizon; // the last frame up to which positions can be compared point by point; unused when static
 } ck_Reference;
 
 // What a metric's truth is.

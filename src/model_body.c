@@ -30,12 +30,12 @@ static ck_Status allocate(ck_Model *model, const ck_Scene *scene, const char *bo
 }
 
 // adds a spring unless its stiffness is 0, which models none
-static void add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, int b, double rest, ck_SpringKind kind) {
+static void add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, int b, double length, ck_SpringKind kind) {
 	const double stiffness[CK_SPRING_KINDS] = {springs->stiffness, springs->shear, springs->bend};
 	bool bar = springs->rigid && (kind == CK_STRUCTURAL || stiffness[kind] > 0);
 	if (!bar && !(stiffness[kind] > 0)) return;
 	model->springs[model->spring_count++] = (ck_Spring){
-		.a = a, .b = b, .rest = rest, .stiffness = bar ? INFINITY : stiffness[kind], .damping = springs->damping, .kind = kind};
+		.a = a, .b = b, .rest = length / (1 + springs->prestretch), .stiffness = bar ? INFINITY : stiffness[kind], .damping = springs->damping, .kind = kind};
 }
 
 static const double origin_default[3] = {0, 0, 0}, across_default[3] = {1, 0, 0}, down_default[3] = {0, -1, 0};
@@ -77,12 +77,12 @@ static const struct {
 static void add_cloth_springs(ck_Model *model, const ck_SceneCloth *cloth, const ck_SceneSprings *springs) {
 	int rows = (int)cloth->rows, columns = (int)cloth->columns;
 	for (size_t s = 0; s < CLOTH_SPRINGS; s++) {
-		double rest = cloth->spacing * hypot(cloth_springs[s].row, cloth_springs[s].column);
+		double length = cloth->spacing * hypot(cloth_springs[s].row, cloth_springs[s].column);
 		for (int row = 0; row < rows; row++)
 			for (int column = 0; column < columns; column++) {
 				int to_row = row + cloth_springs[s].row, to_column = column + cloth_springs[s].column;
 				if (to_row >= rows || to_column >= columns || to_column < 0) continue;
-				add_spring(model, springs, row * columns + column, to_row * columns + to_column, rest, cloth_springs[s].kind);
+				add_spring(model, springs, row * columns + column, to_row * columns + to_column, length, cloth_springs[s].kind);
 			}
 	}
 }

@@ -32,6 +32,79 @@ static bool fall_ahead(const ck_Model *model, const ck_Settings *used, double ti
 	return true;
 }
 
+// One substep of a fall with drag: distance, speed and carried acceleration under a unit field, by superposition with the
+// start velocity as a second, fieldless fall.
+typedef struct Fall {
+	double field, drag, dt;
+	double x, v, a;
+} Fall;
+
+static void fall_verlet(Fall *f) {
+	double a = f->a;
+	f->x += f->dt * f->v + 0.5 * f->dt * f->dt * a;
+	f->a = f->field - f->drag * (f->v + f->dt * a);
+	f->v += 0.5 * f->dt * (a + f->a);
+}
+
+// v is half a substep behind x, as the method holds it
+static void fall_leapfrog(Fall *f) {
+	f->v = (f->v * (1 - 0.5 * f->drag * f->dt) + f->field * f->dt) / (1 + 0.5 * f->drag * f->dt);
+	f->x += f->dt * f->v;
+}
+
+// XPBD's and Bullet's kDP: moves by the whole of v + g·dt, then damps
+static void fall_then_damp(Fall *f) {
+	f->v += f->field * f->dt;
+	f->x += f->dt * f->v;
+	f->v /= 1 + f->drag * f->dt;
+}
+
+static void damp_then_fall(Fall *f) {
+	f->v = (f->v + f->field * f->dt) / (1 + f->drag * f->dt);
+	f->x += f->dt * f->v;
+}
+
+// ODE's LinearDamping takes h·drag off the speed once it has moved
+static void fall_then_scale(Fall *f) {
+	f->v += f->field * f->dt;
+	f->x += f->dt * f->v;
+	f->v *= 1 - f->drag * f->dt;
+}
+
+static Fall fall_for(const ck_Model *model, const ck_Settings *used, double time, double field, double speed, void (*substep)(Fall *)) {
+	Fall f = {.field = field, .drag = model->drag, .dt = time_step(model, used), .v = speed};
+	f.a = field - f.drag * speed;
+	if (substep == fall_leapfrog) f.v -= 0.5 * f.dt * f.a;
+	for (long step = lround(time / f.dt); step > 0; step--) substep(&f);
+	return f;
+}
+
+static bool fall_with_drag(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity, void (*substep)(Fall *)) {
+	Fall pulled = fall_for(model, used, time, 1, 0, substep), thrown = fall_for(model, used, time, 0, 1, substep);
+	memcpy(position, model->position, 3 * sizeof(double) * (size_t)model->particle_count);
+	memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+	for (int i = 0; i < model->particle_count; i++) {
+		double field[3];
+		ck_model_field(model, i, field);
+		ck_add_scaled(position + 3 * i, pulled.x, field);
+		ck_add_scaled(position + 3 * i, thrown.x, model->velocity + 3 * i);
+		ck_add_scaled(velocity + 3 * i, pulled.v, field);
+		ck_add_scaled(velocity + 3 * i, thrown.v, model->velocity + 3 * i);
+	}
+	return true;
+}
+
+#define FALL_WITH_DRAG(name, substep) \
+	static bool name(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) { \
+		return fall_with_drag(model, used, time, position, velocity, substep); \
+	}
+
+FALL_WITH_DRAG(drag_verlet, fall_verlet)
+FALL_WITH_DRAG(drag_leapfrog, fall_leapfrog)
+FALL_WITH_DRAG(drag_then_damp, fall_then_damp)
+FALL_WITH_DRAG(drag_damp_first, damp_then_fall)
+FALL_WITH_DRAG(drag_then_scale, fall_then_scale)
+
 // One substep of a damped oscillator: u, v and the acceleration that the method carries over, in m, m/s and m/s².
 typedef struct Oscillator {
 	double k, c, m, rest, dt;
@@ -186,6 +259,12 @@ static const Theory theories[] = {
 	{CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
 	{CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
 	{CK_METHOD_SEMI_IMPLICIT_ODE, "free_fall", fall_ahead},
+	{CK_METHOD_VELOCITY_VERLET, "terminal_speed", drag_verlet},
+	{CK_METHOD_STOERMER_BARS, "terminal_speed", drag_leapfrog},
+	{CK_METHOD_XPBD, "terminal_speed", drag_then_damp},
+	{CK_METHOD_BULLET_PBD, "terminal_speed", drag_then_damp},
+	{CK_METHOD_IMPLICIT_EULER, "terminal_speed", drag_damp_first},
+	{CK_METHOD_SEMI_IMPLICIT_ODE, "terminal_speed", drag_then_scale},
 	{CK_METHOD_VELOCITY_VERLET, "oscillator", oscillate_verlet},
 	{CK_METHOD_XPBD, "oscillator", oscillate_backward},
 	{CK_METHOD_BULLET_PBD, "oscillator", oscillate_bullet_link},
@@ -207,7 +286,7 @@ static const Theory *find_theory(ck_Method method, const ck_Truth *truth) {
 
 ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine, const ck_Settings *used,
 							   const ck_Truth *truth, ck_Error *error) {
-	*prediction = (ck_Reference){.is_static = truth->reference.is_static};
+	*prediction = (ck_Reference){.is_static = truth->reference.is_static, .horizon = model->frame_count};
 	const Theory *theory = find_theory(engine->method, truth);
 	if (!theory) return CK_OK;
 	ck_Trajectory *path = &prediction->trajectory;

@@ -42,6 +42,7 @@ typedef struct ck_SceneNetwork {
 
 typedef struct ck_SceneSprings {
 	double stiffness, damping, shear, bend; // N/m, N·s/m, N/m, N/m
+	double prestretch;                      // strain at the start: rest length = length/(1 + prestretch)
 	bool rigid;                             // springs become bars of fixed length
 } ck_SceneSprings;
 

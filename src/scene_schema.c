@@ -22,6 +22,7 @@ const ck_RangeRule ck_scene_ranges[] = {
 	{"springs.damping", CK_RANGE_NOT_NEGATIVE},
 	{"springs.shear", CK_RANGE_NOT_NEGATIVE},
 	{"springs.bend", CK_RANGE_NOT_NEGATIVE},
+	{"springs.prestretch", CK_RANGE_NOT_NEGATIVE},
 	{"noise.amplitude", CK_RANGE_NOT_NEGATIVE},
 	{"drag", CK_RANGE_NOT_NEGATIVE},
 	{"colliders[].plane.restitution", CK_RANGE_UNIT},
@@ -79,6 +80,7 @@ static const cyaml_schema_field_t springs_fields[] = {
 	CYAML_FIELD_FLOAT("damping", OPTIONAL, ck_SceneSprings, damping),
 	CYAML_FIELD_FLOAT("shear", OPTIONAL, ck_SceneSprings, shear),
 	CYAML_FIELD_FLOAT("bend", OPTIONAL, ck_SceneSprings, bend),
+	CYAML_FIELD_FLOAT("prestretch", OPTIONAL, ck_SceneSprings, prestretch),
 	CYAML_FIELD_BOOL("rigid", OPTIONAL, ck_SceneSprings, rigid),
 	CYAML_FIELD_END,
 };

@@ -2,12 +2,11 @@
 
 #include "machine.h"
 #include "metric.h"
+#include "path.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define MAX_COLUMNS 20
 
@@ -25,21 +24,9 @@ static const struct {
 	[CK_MACHINE] = {"machine.csv", {"key", "value"}},
 };
 
-// Makes a directory and those above it.
-static int make_directory(const char *directory) {
-	char path[4096];
-	if (snprintf(path, sizeof path, "%s", directory) >= (int)sizeof path) return errno = ENAMETOOLONG;
-	for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-		*slash = 0;
-		if (mkdir(path, 0777) && errno != EEXIST) return errno;
-		*slash = '/';
-	}
-	return mkdir(path, 0777) && errno != EEXIST ? errno : 0;
-}
-
 ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *error) {
 	*tables = (ck_Tables){0};
-	int failed = make_directory(directory);
+	int failed = ck_path_make(directory);
 	if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
 	ck_Status status = CK_OK;
 	for (int i = 0; i < CK_TABLE_COUNT && !status; i++)
@@ -103,11 +90,12 @@ static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index)
 		ck_csv_text(csv, metric->unit);
 		ck_csv_number(csv, value);
 		ck_csv_number(csv, truth);
-		ck_csv_text(csv, isnan(truth) ? "" : comparison->truth.form->kind);
-		ck_csv_number(csv, isnan(truth) ? NAN : comparison->truth.uncertainty * fmax(1, fabs(truth)));
+		// where a truth was asked for and is not to be had, the kind says why
+		ck_csv_text(csv, isnan(truth) && comparison->truth.path_count ? "" : comparison->truth.kind);
+		ck_csv_number(csv, ck_truth_uncertainty(&comparison->truth, model, metric));
 		ck_csv_number(csv, fabs(value - truth));
-		// a settling time or jitter is not a property of the predicted state at rest
-		bool foretold = prediction->trajectory.frame_count && metric->at && (!prediction->is_static || metric->truth != CK_TRUTH_NONE);
+		// a path of one frame has no whole-run metrics
+		bool foretold = prediction->trajectory.frame_count && (metric->at || !prediction->is_static);
 		ck_csv_number(csv, foretold ? ck_metric_value(metric, model, &prediction->trajectory, reference) : NAN);
 	}
 }

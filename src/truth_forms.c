@@ -4,12 +4,25 @@
 
 #include <string.h>
 
-static ck_Status need(bool met, const ck_Model *model, ck_Error *error, const char *wanted) {
+ck_Status ck_truth_need(bool met, const ck_Model *model, ck_Error *error, const char *wanted) {
 	return met ? CK_OK : ck_fail(error, CK_BAD_INPUT, "%s: truth %s needs %s", model->name, model->truth, wanted);
 }
 
-static bool is_rope_of_springs(const ck_Model *model) {
-	return model->body == CK_ROPE && model->spring_count == model->particle_count - 1 && model->spring_count > 0;
+bool ck_truth_is_chain(const ck_Model *model) {
+	if (model->spring_count != model->particle_count - 1 || !model->spring_count) return false;
+	for (int i = 0; i < model->spring_count; i++)
+		if (model->springs[i].a != i || model->springs[i].b != i + 1) return false;
+	return true;
+}
+
+bool ck_truth_is_falling(const ck_Model *model) {
+	bool falling = !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE));
+	for (int i = 0; i < model->spring_count; i++) {
+		const ck_Spring *spring = &model->springs[i];
+		double length = ck_distance(model->position + 3 * spring->a, model->position + 3 * spring->b);
+		falling &= fabs(length - spring->rest) <= 1e-12 * spring->rest;
+	}
+	return falling;
 }
 
 static double compliance(const ck_Spring *spring) {
@@ -18,8 +31,8 @@ static double compliance(const ck_Spring *spring) {
 
 ck_Status ck_truth_vertical_chain(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
 	(void)time;
-	bool fits = is_rope_of_springs(model) && model->pin_count == 1 && model->pinned[0] && (model->terms & CK_TERM_GRAVITY);
-	ck_Status status = need(fits && !model->collider_count, model, error, "a rope without bend springs, pinned at its first particle alone, in gravity");
+	bool fits = ck_truth_is_chain(model) && model->pin_count == 1 && model->pinned[0] && (model->terms & CK_TERM_GRAVITY);
+	ck_Status status = ck_truth_need(fits && !model->collider_count, model, error, "a rope or chain of bars without bend springs, pinned at its first particle alone, in gravity");
 	if (status) return status;
 	memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
 	memcpy(position, model->position, 3 * sizeof(double));
@@ -83,8 +96,8 @@ static double miss(const ck_Model *model, const double *tension, double *positio
 ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
 	(void)time;
 	int last = model->particle_count - 1;
-	bool fits = is_rope_of_springs(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] && (model->terms & CK_TERM_GRAVITY);
-	ck_Status status = need(fits && !model->collider_count, model, error, "a rope without bend springs, pinned at both ends, in gravity");
+	bool fits = ck_truth_is_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] && (model->terms & CK_TERM_GRAVITY);
+	ck_Status status = ck_truth_need(fits && !model->collider_count, model, error, "a rope or chain of bars without bend springs, pinned at both ends, in gravity");
 	if (status) return status;
 	memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
 
@@ -108,17 +121,12 @@ ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position
 		off = trial_off;
 	}
 	off = miss(model, tension, position, gap, jacobian);
-	return need(off <= 1e-12 * model->size, model, error, "a rope whose shooting converges; this one misses its second pin");
+	return ck_truth_need(off <= 1e-12 * model->size, model, error, "a rope whose shooting converges; this one misses its second pin");
 }
 
 ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
-	bool fits = !model->pin_count && !(model->terms & (CK_TERM_DRAG | CK_TERM_PLANE | CK_TERM_SPHERE));
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *spring = &model->springs[i];
-		double length = ck_distance(model->position + 3 * spring->a, model->position + 3 * spring->b);
-		fits &= fabs(length - spring->rest) <= 1e-12 * spring->rest;
-	}
-	ck_Status status = need(fits, model, error, "a body without pins, drag, colliders and noise");
+	bool fits = ck_truth_is_falling(model) && !(model->terms & CK_TERM_DRAG);
+	ck_Status status = ck_truth_need(fits, model, error, "a body without pins, drag, colliders and noise");
 	if (status) return status;
 	for (int i = 0; i < model->particle_count; i++) {
 		double field[3];
@@ -129,29 +137,5 @@ ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *positio
 			velocity[at] = model->velocity[at] + field[axis] * time;
 		}
 	}
-	return CK_OK;
-}
-
-ck_Status ck_truth_oscillator(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
-	unsigned others = CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RIGID;
-	bool fits = model->particle_count == 2 && model->spring_count == 1 && model->pin_count == 1 && model->pinned[0] && !(model->terms & others);
-	double along[3] = {0}, start = 0, across = 0;
-	if (fits) {
-		ck_subtract(along, model->position + 3, model->position);
-		for (int axis = 0; axis < 3; axis++) along[axis] /= model->springs[0].rest;
-		start = ck_dot(model->velocity + 3, along);
-		across = ck_dot(model->velocity + 3, model->velocity + 3) - start * start;
-	}
-	double k = fits ? model->springs[0].stiffness : 1, c = fits ? model->springs[0].damping : 0, m = fits ? model->mass[1] : 1;
-	double decay = 0.5 * c / m, frequency = sqrt(k / m - decay * decay);
-	fits &= fabs(across) <= 1e-12 * start * start && frequency > 0;
-	ck_Status status = need(fits, model, error, "two particles, one spring, the first pinned, a start velocity along the spring, less than critical damping, and no other term");
-	if (status) return status;
-	double amplitude = start / frequency * exp(-decay * time);
-	double offset = amplitude * sin(frequency * time), speed = amplitude * (frequency * cos(frequency * time) - decay * sin(frequency * time));
-	memcpy(position, model->position, 6 * sizeof(double));
-	memset(velocity, 0, 6 * sizeof(double));
-	ck_add_scaled(position + 3, offset, along);
-	ck_add_scaled(velocity + 3, speed, along);
 	return CK_OK;
 }

@@ -1,4 +1,4 @@
-// The closed forms behind the truth table. All have the signature of ck_TruthForm.at.
+// Closed forms of rest and of falling. Those with a time have the signature of ck_TruthForm.at.
 #ifndef CK_TRUTH_FORMS_H
 #define CK_TRUTH_FORMS_H
 
@@ -13,7 +13,13 @@ ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position
 // Any body without pins, drag and colliders, whose springs start at rest.
 ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
 
-// Two particles joined by a spring, the first pinned, the second thrown along it; no gravity, force or drag.
-ck_Status ck_truth_oscillator(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+// What the forms ask of a model: fails with "NAME: truth TRUTH needs WANTED" unless met.
+ck_Status ck_truth_need(bool met, const ck_Model *model, ck_Error *error, const char *wanted);
+
+// True for particles joined one after the other by one spring each, and no others: a rope, or a network of such bars.
+bool ck_truth_is_chain(const ck_Model *model);
+
+// True without pins and colliders, and with springs that start at rest: nothing but field and drag moves it.
+bool ck_truth_is_falling(const ck_Model *model);
 
 #endif

@@ -1,0 +1,13 @@
+// The computed truths behind the truth table. Both have the signature of ck_TruthForm.solve.
+#ifndef CK_TRUTH_SOLVE_H
+#define CK_TRUTH_SOLVE_H
+
+#include "truth.h"
+
+// The equilibrium that the release leads to, and those of nudged starts.
+ck_Status ck_truth_solve_equilibrium(ck_Truth *truth, const ck_Model *model, ck_Error *error);
+
+// The reference path, and the one at twice its step.
+ck_Status ck_truth_solve_trajectory(ck_Truth *truth, const ck_Model *model, ck_Error *error);
+
+#endif
