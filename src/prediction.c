@@ -1,5 +1,6 @@
 #include "prediction.h"
 
+#include "prediction_rest.h"
 #include "vector.h"
 
 #include <string.h>
@@ -278,6 +279,15 @@ static const Theory theories[] = {
 	{CK_METHOD_SEMI_IMPLICIT_ODE, "vertical_chain", hang_exactly},
 };
 
+// At rest on a network: those that solve a step's forces are exact, the sweeping ones soften.
+static bool rest_on_network(const ck_Model *model, ck_Method method, const ck_Settings *used, const ck_Truth *truth, double *position) {
+	const double *at_rest = ck_trajectory_position(&truth->reference.trajectory, 0);
+	bool exact = method == CK_METHOD_VELOCITY_VERLET || method == CK_METHOD_IMPLICIT_EULER || method == CK_METHOD_SEMI_IMPLICIT_ODE;
+	if (!exact) return ck_prediction_rest(model, method, used, at_rest, position);
+	memcpy(position, at_rest, 3 * sizeof(double) * (size_t)model->particle_count);
+	return true;
+}
+
 static const Theory *find_theory(ck_Method method, const ck_Truth *truth) {
 	for (size_t i = 0; truth->form && i < sizeof theories / sizeof *theories; i++)
 		if (theories[i].method == method && !strcmp(theories[i].truth, truth->form->name)) return &theories[i];
@@ -288,9 +298,12 @@ ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, 
 							   const ck_Truth *truth, ck_Error *error) {
 	*prediction = (ck_Reference){.is_static = truth->reference.is_static, .horizon = model->frame_count};
 	const Theory *theory = find_theory(engine->method, truth);
-	if (!theory) return CK_OK;
+	bool network = !theory && truth->path_count && truth->form->is_static;
+	if (!theory && !network) return CK_OK;
 	ck_Trajectory *path = &prediction->trajectory;
 	ck_Status status = ck_trajectory_create(path, model, error);
+	if (!status && network) path->frame_count = rest_on_network(model, engine->method, used, truth, path->data);
+	if (network) return status;
 	int frames = prediction->is_static ? 1 : model->frame_count + 1;
 	for (int frame = 0; frame < frames && !status; frame++) {
 		if (!theory->at(model, used, frame * model->step, ck_trajectory_position(path, frame), ck_trajectory_velocity(path, frame))) {

@@ -25,7 +25,7 @@ typedef struct ck_TruthForm {
 	ck_Status (*solve)(struct ck_Truth *truth, const ck_Model *model, ck_Error *error);
 } ck_TruthForm;
 
-#define CK_TRUTH_MAX_PATHS 4
+#define CK_TRUTH_MAX_PATHS 5
 
 typedef struct ck_Truth {
 	const ck_TruthForm *form; // NULL: the scene has none

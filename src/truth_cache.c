@@ -54,7 +54,7 @@ static bool is_header_sound(const Header *header, const ck_Truth *truth, const c
 	return sound && header->horizon >= 0 && header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
 }
 
-// Reads the paths and holds them against the header's hash, and equilibria against their own forces.
+// Reads the paths and holds them against the header's hash, and an equilibrium against its own forces.
 static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *model, FILE *file) {
 	uint64_t value = HASH_START;
 	for (int i = 0; i < header->path_count; i++) {
@@ -66,7 +66,7 @@ static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *m
 		if (fread(path->data, 1, path->bytes, file) != path->bytes) return false;
 		path->frame_count = header->frame_counts[i];
 		value = hash(value, path->data, path->bytes);
-		if (!loaded->form->is_static) continue;
+		if (i || !loaded->form->is_static) continue;
 		double residual = ck_equilibrium_residual(model, path->data);
 		if (!(residual >= 0 && residual <= CK_EQUILIBRIUM_RESIDUAL)) return false;
 	}
