@@ -113,12 +113,12 @@ ck_Status ck_truth_taut_string(const ck_Model *model, double time, double *posit
 	return CK_OK;
 }
 
-// A slope s raises the tension by k·d·s²/2, and the phase ω·t of the first mode by half that share; s = v/c, c the wave
-// speed. The path is off by that phase times the amplitude v/ω.
+// A slope s = v/c, c the wave speed, draws points along the string by up to s²/2 of its length, raises the tension by
+// k·d·s²/2, and so the phase ω·t of the first mode by half that share, times the amplitude v/ω.
 double ck_truth_taut_string_off(const ck_Model *model) {
 	double tension = string_tension(model), wave = sqrt(tension * model->spacing / model->mass[0]), speed = ck_length(model->velocity + 3);
 	double slope = speed / wave, share = 0.25 * model->springs[0].stiffness * model->spacing / tension * slope * slope;
-	return share * speed * model->duration / model->size;
+	return 0.5 * slope * slope + share * speed * model->duration / model->size;
 }
 
 // Laguerre polynomial by its three-term recurrence.
@@ -175,13 +175,14 @@ ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *pos
 	return CK_OK;
 }
 
-// Strain of the springs changes lengths, and half of it frequencies: a phase of ω·t, ω ≤ √(g·N/l)·strain/2, times the
-// amplitude v/ω. And swinging by an angle s = v/√(g·L) shortens the drop and the tension by s² of themselves.
+// Let go unstretched, it bounces to twice the strain at rest. Swinging by an angle s = v/√(g·L), which the thinning
+// tension about doubles at the free end, lifts points by (2s)²/2. Both change frequencies by half their share, and so the
+// phase ω·t times the amplitude v/ω.
 double ck_truth_hanging_chain_off(const ck_Model *model) {
 	double speed = ck_length(model->velocity + 3), g = ck_length(model->gravity);
 	double strain = isinf(model->springs[0].stiffness) ? 0 : ck_stability_load(model) / model->springs[0].stiffness / model->spacing;
 	double angle = speed / sqrt(g * model->size);
-	return strain + (strain + angle * angle) * speed * model->duration / model->size;
+	return 2 * strain + 2 * angle * angle + (strain + angle * angle) * speed * model->duration / model->size;
 }
 
 // Jacobi's sn, cn, dn by the arithmetic–geometric mean. Source: Abramowitz and Stegun 16.4.
