@@ -3,6 +3,8 @@
 #include "random.h"
 #include "verdict.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -15,6 +17,7 @@ ck_CompareOptions ck_compare_options_default(void) {
 		.engine_count = ck_engine_count(),
 		.repeats = 5,
 		.budget = 2,
+		.consistency_budget = 10,
 		.seed = 1,
 		.limits = ck_limits_default(),
 	};
@@ -68,10 +71,14 @@ static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions 
 		report(options, comparison, i, "measuring");
 		ck_Status status = ck_run_measure(run, &comparison->model, options->engines[i], &wanted, &options->limits, error);
 		comparison->run_count = i + 1;
+		for (int step = 0; step < CK_CONSISTENCY_STEPS; step++) comparison->consistency[i][step] = NAN;
 		if (status) return status;
 		ck_verdict(run, &comparison->truth.reference);
 		if (!ck_comparison_has_path(comparison, i)) continue;
 		status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used, &comparison->truth, error);
+		report(options, comparison, i, "restarting");
+		if (!status && options->consistency_budget > 0)
+			status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget, &options->limits, error);
 		if (status) return status;
 	}
 	return CK_OK;
@@ -100,7 +107,8 @@ static ck_Status time_all(ck_Comparison *comparison, const ck_CompareOptions *op
 ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
 	comparison->runs = calloc((size_t)options->engine_count + 1, sizeof *comparison->runs);
 	comparison->predictions = calloc((size_t)options->engine_count + 1, sizeof *comparison->predictions);
-	if (!comparison->runs || !comparison->predictions) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+	comparison->consistency = calloc((size_t)options->engine_count + 1, sizeof *comparison->consistency);
+	if (!comparison->runs || !comparison->predictions || !comparison->consistency) return ck_fail(error, CK_NO_MEMORY, "out of memory");
 	if (options->progress) options->progress(comparison->model.name, "truth", "finding");
 	ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, error);
 	if (!status) status = measure_all(comparison, options, error);
@@ -119,6 +127,8 @@ void ck_comparison_free_runs(ck_Comparison *comparison) {
 	}
 	free(comparison->runs);
 	free(comparison->predictions);
+	free(comparison->consistency);
+	comparison->consistency = NULL;
 	comparison->runs = NULL;
 	comparison->predictions = NULL;
 	comparison->run_count = 0;

@@ -3,6 +3,7 @@
 #define CK_COMPARISON_H
 
 #include "child.h"
+#include "consistency.h"
 #include "engine.h"
 #include "prediction.h"
 #include "runner.h"
@@ -20,6 +21,7 @@ typedef struct ck_CompareOptions {
 	const ck_Override *overrides;
 	int override_count;
 	int repeats;   // timed; 0: no timing
+	double consistency_budget; // s of CPU time that an engine's self-consistency may take; 0: not measured
 	double budget; // s of CPU time per timed repeat at most
 	uint64_t seed; // of the order in which engines are timed
 	ck_Limits limits;
@@ -28,7 +30,7 @@ typedef struct ck_CompareOptions {
 	void (*progress)(const char *scene, const char *engine, const char *doing);
 } ck_CompareOptions;
 
-// All engines of the table, 5 repeats of at most 2 s, seed 1, default limits.
+// All engines of the table, 5 repeats of at most 2 s, self-consistency up to 10 s, seed 1, default limits.
 ck_CompareOptions ck_compare_options_default(void);
 
 typedef struct ck_Comparison {
@@ -38,6 +40,7 @@ typedef struct ck_Comparison {
 	ck_Truth truth;
 	ck_Run *runs; // [run_count], one an engine, in the order of options.engines
 	ck_Reference *predictions;
+	double (*consistency)[CK_CONSISTENCY_STEPS]; // of each run, NaN where it was not measured
 	int run_count;
 } ck_Comparison;
 

@@ -100,6 +100,24 @@ static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index)
 	}
 }
 
+// The engine against its own finest run: whether it converges at all, not whether it is right.
+static void add_consistency(ck_Csv *csv, const ck_Comparison *comparison, int index) {
+	for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) {
+		double value = comparison->consistency[index][i];
+		if (isnan(value)) continue;
+		ck_csv_text(csv, comparison->model.name);
+		ck_csv_text(csv, comparison->runs[index].engine->name);
+		ck_csv_text(csv, ck_consistency_names[i]);
+		ck_csv_text(csv, "1");
+		ck_csv_number(csv, value);
+		ck_csv_number(csv, 0);
+		ck_csv_text(csv, "its own finest run");
+		ck_csv_number(csv, NAN);
+		ck_csv_number(csv, value);
+		ck_csv_number(csv, NAN);
+	}
+}
+
 static void add_deviations(ck_Csv *csv, const ck_Comparison *comparison) {
 	const ck_Model *model = &comparison->model;
 	for (int i = 0; i < ck_metric_count(); i++) {
@@ -158,6 +176,7 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
 		add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
 		add_series(&tables->csv[CK_SERIES], comparison, &comparison->runs[i]);
 		if (ck_comparison_has_path(comparison, i)) add_metrics(&tables->csv[CK_METRICS], comparison, i);
+		add_consistency(&tables->csv[CK_METRICS], comparison, i);
 	}
 	add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
 }

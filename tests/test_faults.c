@@ -2,6 +2,7 @@
 #include "fixture.h"
 
 #include "engine_list.h"
+#include "outlier.h"
 #include "reference.h"
 #include "vector.h"
 
@@ -189,6 +190,15 @@ static void test_faults_at_rest(void **state) {
 	// the outlier of two against three is seen without any truth
 	double apart = ck_metric_deviation(stretch, &comparison.model, &comparison.runs[0].trajectory, &comparison.runs[1].trajectory, &comparison.truth.reference);
 	assert_true(apart > 5e-3 * right);
+	for (int i = 0; i < 2; i++) {
+		const ck_Engine *const three[] = {&healthy, ck_engine_find("bullet-implicit"), ck_engine_find("ode-direct"), i ? &torn : &heavier};
+		ck_Comparison others;
+		compare(&others, hanging, three, 4);
+		ck_Outlier outlier = ck_outlier_find(&others, stretch);
+		assert_int_equal(outlier.run, 3);
+		assert_true(outlier.distance > 10 * outlier.rest);
+		ck_comparison_free(&others);
+	}
 	ck_comparison_free(&comparison);
 }
 
