@@ -6,79 +6,83 @@
 #include <cstdio>
 
 extern "C" const char *ck_bullet_version(void) {
-	static char text[24];
-	std::snprintf(text, sizeof text, "%d.%02d double", btGetVersion() / 100, btGetVersion() % 100);
-	return text;
+    static char text[24];
+    std::snprintf(text, sizeof text, "%d.%02d double", btGetVersion() / 100, btGetVersion() % 100);
+    return text;
 }
 
 static btVector3 vector_at(const double *values, int index) {
-	return btVector3(values[3 * index], values[3 * index + 1], values[3 * index + 2]);
+    return btVector3(values[3 * index], values[3 * index + 1], values[3 * index + 2]);
 }
 
 static void add_links(ck_BulletBody &body) {
-	btSoftBody *soft = body.soft.get();
-	btSoftBody::Material *material = soft->appendMaterial();
-	for (int i = 0; i < body.model->spring_count; i++) {
-		const ck_Spring *spring = &body.model->springs[i];
-		if (body.model->pinned[spring->a] && body.model->pinned[spring->b]) continue;
-		// without the check for doubles, which searches all links for each one
-		soft->appendLink(body.node_of_particle[spring->a], body.node_of_particle[spring->b], material, false);
-		body.spring.push_back(spring);
-	}
-	// the order matters: Bullet's first step takes current lengths for rest lengths unless its flag is down
-	soft->updateConstants();
-	soft->m_bUpdateRtCst = false;
-	for (int i = 0; i < soft->m_links.size(); i++) {
-		soft->m_links[i].m_rl = body.spring[i]->rest;
-		soft->m_links[i].m_c1 = body.spring[i]->rest * body.spring[i]->rest;
-	}
+    btSoftBody *soft = body.soft.get();
+    btSoftBody::Material *material = soft->appendMaterial();
+    for (int i = 0; i < body.model->spring_count; i++) {
+        const ck_Spring *spring = &body.model->springs[i];
+        if (body.model->pinned[spring->a] && body.model->pinned[spring->b]) continue;
+        // without the check for doubles, which searches all links for each one
+        soft->appendLink(body.node_of_particle[spring->a], body.node_of_particle[spring->b], material, false);
+        body.spring.push_back(spring);
+    }
+    // the order matters: Bullet's first step takes current lengths for rest lengths unless its flag is down
+    soft->updateConstants();
+    soft->m_bUpdateRtCst = false;
+    for (int i = 0; i < soft->m_links.size(); i++) {
+        soft->m_links[i].m_rl = body.spring[i]->rest;
+        soft->m_links[i].m_c1 = body.spring[i]->rest * body.spring[i]->rest;
+    }
 }
 
 void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, btSoftBodyWorldInfo *info) {
-	body.model = model;
-	body.substeps = substeps;
-	body.dt = model->step / substeps;
-	body.node_of_particle.resize(model->particle_count);
-	std::vector<btVector3> position;
-	std::vector<btScalar> mass;
-	std::vector<int> particle_of_node;
-	for (bool pinned : {false, true})
-		for (int i = 0; i < model->particle_count; i++) {
-			if (model->pinned[i] != pinned) continue;
-			body.node_of_particle[i] = static_cast<int>(position.size());
-			position.push_back(vector_at(model->position, i));
-			mass.push_back(pinned ? 0 : model->mass[i]);
-		}
-	body.soft = std::make_unique<btSoftBody>(info, model->particle_count, position.data(), mass.data());
-	add_links(body);
-	for (int i = 0; i < model->particle_count; i++) {
-		btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
-		node.m_v = node.m_vn = vector_at(model->velocity, i);
-	}
+    body.model = model;
+    body.substeps = substeps;
+    body.dt = model->step / substeps;
+    body.node_of_particle.resize(model->particle_count);
+    std::vector<btVector3> position;
+    std::vector<btScalar> mass;
+    std::vector<int> particle_of_node;
+    for (bool pinned : {false, true})
+        for (int i = 0; i < model->particle_count; i++) {
+            if (model->pinned[i] != pinned) continue;
+            body.node_of_particle[i] = static_cast<int>(position.size());
+            position.push_back(vector_at(model->position, i));
+            mass.push_back(pinned ? 0 : model->mass[i]);
+        }
+    body.soft = std::make_unique<btSoftBody>(info, model->particle_count, position.data(), mass.data());
+    add_links(body);
+    for (int i = 0; i < model->particle_count; i++) {
+        btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
+        node.m_v = node.m_vn = vector_at(model->velocity, i);
+    }
 }
 
 void ck_bullet_body_read(const ck_BulletBody &body, double *position, double *velocity) {
-	for (int i = 0; i < body.model->particle_count; i++) {
-		const btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
-		for (int axis = 0; axis < 3; axis++) {
-			position[3 * i + axis] = node.m_x[axis];
-			velocity[3 * i + axis] = node.m_v[axis];
-		}
-	}
+    for (int i = 0; i < body.model->particle_count; i++) {
+        const btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
+        for (int axis = 0; axis < 3; axis++) {
+            position[3 * i + axis] = node.m_x[axis];
+            velocity[3 * i + axis] = node.m_v[axis];
+        }
+    }
 }
 
 bool ck_bullet_body_is_finite(const ck_BulletBody &body) {
-	for (int i = 0; i < body.soft->m_nodes.size(); i++) {
-		const btSoftBody::Node &node = body.soft->m_nodes[i];
-		if (!std::isfinite(node.m_x.length2()) || !std::isfinite(node.m_v.length2())) return false;
-	}
-	return true;
+    for (int i = 0; i < body.soft->m_nodes.size(); i++) {
+        const btSoftBody::Node &node = body.soft->m_nodes[i];
+        if (!std::isfinite(node.m_x.length2()) || !std::isfinite(node.m_v.length2())) return false;
+    }
+    return true;
 }
 
 void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used) {
-	ck_ledger_add(ledger, {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
-	ck_ledger_add(ledger, {"mass", model->mass[0], "kg", "Node::m_im", 1 / model->mass[0], "1/m, 0 where pinned", CK_EXACT});
-	double gravity = ck_length(model->gravity), force = ck_length(model->force);
-	if (model->terms & CK_TERM_GRAVITY) ck_ledger_add(ledger, {"gravity", gravity, "m/s2", "m_gravity", gravity, "g", CK_EXACT});
-	if (model->terms & CK_TERM_FORCE) ck_ledger_add(ledger, {"force", force, "N", "Node::m_f", force, "F before each step", CK_EXACT});
+    ck_ledger_add(ledger,
+                  {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
+    ck_ledger_add(ledger,
+                  {"mass", model->mass[0], "kg", "Node::m_im", 1 / model->mass[0], "1/m, 0 where pinned", CK_EXACT});
+    double gravity = ck_length(model->gravity), force = ck_length(model->force);
+    if (model->terms & CK_TERM_GRAVITY)
+        ck_ledger_add(ledger, {"gravity", gravity, "m/s2", "m_gravity", gravity, "g", CK_EXACT});
+    if (model->terms & CK_TERM_FORCE)
+        ck_ledger_add(ledger, {"force", force, "N", "Node::m_f", force, "F before each step", CK_EXACT});
 }

@@ -11,12 +11,13 @@
 static_assert(sizeof(btScalar) == 8, "Bullet must be built in double precision: link bullet-float64");
 
 struct ck_BulletBody {
-	const ck_Model *model;
-	double dt;                             // s, one substep
-	uint32_t substeps;
-	std::unique_ptr<btSoftBody> soft;
-	std::vector<int> node_of_particle;     // pinned particles come last, as the contact solver of the deformable world needs
-	std::vector<const ck_Spring *> spring; // of each link
+    const ck_Model *model;
+    double dt; // s, one substep
+    uint32_t substeps;
+    std::unique_ptr<btSoftBody> soft;
+    std::vector<int>
+        node_of_particle; // pinned particles come last, as the contact solver of the deformable world needs
+    std::vector<const ck_Spring *> spring; // of each link
 };
 
 // Builds nodes and links with the scene's rest lengths, which Bullet would overwrite on its first step if let.

@@ -11,18 +11,20 @@
 
 class ck_BulletSprings : public btDeformableLagrangianForce {
   public:
-	explicit ck_BulletSprings(const ck_BulletBody &owner) : body(owner) {}
+    explicit ck_BulletSprings(const ck_BulletBody &owner) : body(owner) {}
 
-	void addScaledForces(btScalar scale, TVStack &force) override;
-	void addScaledExplicitForce(btScalar scale, TVStack &force) override;
-	void addScaledDampingForce(btScalar scale, TVStack &force) override;
-	void addScaledElasticForceDifferential(btScalar scale, const TVStack &dx, TVStack &df) override;
-	void addScaledDampingForceDifferential(btScalar scale, const TVStack &dv, TVStack &df) override;
-	void buildDampingForceDifferentialDiagonal(btScalar scale, TVStack &diagonal) override;
-	btDeformableLagrangianForceType getForceType() override { return BT_MASSSPRING_FORCE; }
+    void addScaledForces(btScalar scale, TVStack &force) override;
+    void addScaledExplicitForce(btScalar scale, TVStack &force) override;
+    void addScaledDampingForce(btScalar scale, TVStack &force) override;
+    void addScaledElasticForceDifferential(btScalar scale, const TVStack &dx, TVStack &df) override;
+    void addScaledDampingForceDifferential(btScalar scale, const TVStack &dv, TVStack &df) override;
+    void buildDampingForceDifferentialDiagonal(btScalar scale, TVStack &diagonal) override;
+    btDeformableLagrangianForceType getForceType() override {
+        return BT_MASSSPRING_FORCE;
+    }
 
   private:
-	const ck_BulletBody &body;
+    const ck_BulletBody &body;
 };
 
 #endif

@@ -12,211 +12,230 @@
 #define MAX_SPEED 1e6
 
 typedef struct OdeWorld {
-	const ck_Model *model;
-	dWorldID world;
-	dJointGroupID joints;
-	dBodyID *bodies; // [particle_count]
-	double dt;       // s, one substep
-	uint32_t substeps;
-	bool quick;
+    const ck_Model *model;
+    dWorldID world;
+    dJointGroupID joints;
+    dBodyID *bodies; // [particle_count]
+    double dt;       // s, one substep
+    uint32_t substeps;
+    bool quick;
 } OdeWorld;
 
 // dInitODE2 and dCloseODE bracket all worlds of the process.
 static int world_count;
 
 static const char *version(void) {
-	return dGetConfiguration() ? CK_ODE_VERSION " double" : "";
+    return dGetConfiguration() ? CK_ODE_VERSION " double" : "";
 }
 
 // A spring as ODE knows it: the joint pushes with k(L − l) − (h·k + c)·l̇ along the direction at the start of the step.
 static double error_reduction(const ck_Spring *spring, double h) {
-	return isinf(spring->stiffness) ? 0.8 : h * spring->stiffness / (h * spring->stiffness + spring->damping);
+    return isinf(spring->stiffness) ? 0.8 : h * spring->stiffness / (h * spring->stiffness + spring->damping);
 }
 
 // A rigid bar keeps a little softness: dWorldStep aborts on redundant constraints without.
 static double constraint_force_mixing(const ck_Spring *spring, double h) {
-	return isinf(spring->stiffness) ? 1e-8 : 1 / (h * spring->stiffness + spring->damping);
+    return isinf(spring->stiffness) ? 1e-8 : 1 / (h * spring->stiffness + spring->damping);
 }
 
 static int row_count(const ck_Model *model) {
-	int rows = 0;
-	for (int i = 0; i < model->spring_count; i++) rows += !(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]);
-	return rows;
+    int rows = 0;
+    for (int i = 0; i < model->spring_count; i++)
+        rows += !(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]);
+    return rows;
 }
 
 static void translate_springs(const ck_Model *model, double h, ck_Ledger *ledger, ck_Match match) {
-	for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-		const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
-		if (!spring) continue;
-		bool rigid = isinf(spring->stiffness);
-		ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamCFM", constraint_force_mixing(spring, h),
-											 rigid ? "1e-8: softest that is safe" : "1/(h*k + c)", rigid ? CK_APPROXIMATE : match});
-		ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamERP", error_reduction(spring, h),
-											 rigid ? "0.8 of the error per step" : "h*k/(h*k + c)", rigid ? CK_APPROXIMATE : match});
-	}
-	if (model->terms & CK_TERM_DAMPING)
-		ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "dParamERP, dParamCFM", model->springs[0].damping, "in both of the above", match});
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (!spring) continue;
+        bool rigid = isinf(spring->stiffness);
+        ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamCFM",
+                                             constraint_force_mixing(spring, h),
+                                             rigid ? "1e-8: softest that is safe" : "1/(h*k + c)",
+                                             rigid ? CK_APPROXIMATE : match});
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamERP",
+                                     error_reduction(spring, h), rigid ? "0.8 of the error per step" : "h*k/(h*k + c)",
+                                     rigid ? CK_APPROXIMATE : match});
+    }
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "dParamERP, dParamCFM",
+                                     model->springs[0].damping, "in both of the above", match});
 }
 
 // Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, and at
 // most 1/120 s; for QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9 of a spring's error.
-static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger, bool quick) {
-	double limit = fmin(1.0 / 120, ck_stability_transverse_time(model));
-	double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
-	if (quick && rate > 0) limit = fmin(limit, sqrt(10 / rate));
-	*used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
-	if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
-	if (quick) used->relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1.3;
-	double h = model->step / used->substeps;
-	ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "h", h, "step / substeps", CK_EXACT});
-	ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "dMass", model->mass[0], "m; kinematic where pinned", CK_EXACT});
-	if (model->terms & CK_TERM_GRAVITY)
-		ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "dWorldSetGravity", ck_length(model->gravity), "g", CK_EXACT});
-	if (model->terms & CK_TERM_FORCE)
-		ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "dBodyAddForce", ck_length(model->force), "F before each step", CK_EXACT});
-	if (model->terms & CK_TERM_DRAG)
-		ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "dBodySetLinearDamping", model->drag * h, "h*drag, threshold 0", CK_EXACT});
-	// QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
-	translate_springs(model, h, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
+static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
+                      bool quick) {
+    double limit = fmin(1.0 / 120, ck_stability_transverse_time(model));
+    double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
+    if (quick && rate > 0) limit = fmin(limit, sqrt(10 / rate));
+    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
+    if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
+    if (quick) used->relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1.3;
+    double h = model->step / used->substeps;
+    ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "h", h, "step / substeps", CK_EXACT});
+    ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "dMass", model->mass[0],
+                                         "m; kinematic where pinned", CK_EXACT});
+    if (model->terms & CK_TERM_GRAVITY)
+        ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "dWorldSetGravity",
+                                             ck_length(model->gravity), "g", CK_EXACT});
+    if (model->terms & CK_TERM_FORCE)
+        ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "dBodyAddForce",
+                                             ck_length(model->force), "F before each step", CK_EXACT});
+    if (model->terms & CK_TERM_DRAG)
+        ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "dBodySetLinearDamping", model->drag * h,
+                                             "h*drag, threshold 0", CK_EXACT});
+    // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
+    translate_springs(model, h, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
 }
 
 static void destroy(void *state) {
-	OdeWorld *ode = state;
-	if (ode->joints) dJointGroupDestroy(ode->joints);
-	if (ode->world) dWorldDestroy(ode->world);
-	if (--world_count == 0) dCloseODE();
-	free(ode->bodies);
-	free(ode);
+    OdeWorld *ode = state;
+    if (ode->joints) dJointGroupDestroy(ode->joints);
+    if (ode->world) dWorldDestroy(ode->world);
+    if (--world_count == 0) dCloseODE();
+    free(ode->bodies);
+    free(ode);
 }
 
 static void add_bodies(OdeWorld *ode) {
-	const ck_Model *model = ode->model;
-	for (int i = 0; i < model->particle_count; i++) {
-		const double *position = model->position + 3 * i, *velocity = model->velocity + 3 * i;
-		dBodyID body = dBodyCreate(ode->world);
-		ode->bodies[i] = body;
-		dBodySetPosition(body, position[0], position[1], position[2]);
-		// springs pull at the centre, so that nothing turns and any inertia does
-		dMass mass;
-		dMassSetSphereTotal(&mass, model->mass[i], 0.5 * model->spacing);
-		dBodySetMass(body, &mass);
-		dBodySetGyroscopicMode(body, 0);
-		dBodySetLinearVel(body, velocity[0], velocity[1], velocity[2]);
-		if (model->pinned[i]) dBodySetKinematic(body);
-		dBodySetLinearDampingThreshold(body, 0);
-		dBodySetLinearDamping(body, model->pinned[i] ? 0 : model->drag * ode->dt);
-	}
+    const ck_Model *model = ode->model;
+    for (int i = 0; i < model->particle_count; i++) {
+        const double *position = model->position + 3 * i, *velocity = model->velocity + 3 * i;
+        dBodyID body = dBodyCreate(ode->world);
+        ode->bodies[i] = body;
+        dBodySetPosition(body, position[0], position[1], position[2]);
+        // springs pull at the centre, so that nothing turns and any inertia does
+        dMass mass;
+        dMassSetSphereTotal(&mass, model->mass[i], 0.5 * model->spacing);
+        dBodySetMass(body, &mass);
+        dBodySetGyroscopicMode(body, 0);
+        dBodySetLinearVel(body, velocity[0], velocity[1], velocity[2]);
+        if (model->pinned[i]) dBodySetKinematic(body);
+        dBodySetLinearDampingThreshold(body, 0);
+        dBodySetLinearDamping(body, model->pinned[i] ? 0 : model->drag * ode->dt);
+    }
 }
 
 static void add_joints(OdeWorld *ode) {
-	const ck_Model *model = ode->model;
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *spring = &model->springs[i];
-		if (model->pinned[spring->a] && model->pinned[spring->b]) continue;
-		dJointID joint = dJointCreateDBall(ode->world, ode->joints);
-		dJointAttach(joint, ode->bodies[spring->a], ode->bodies[spring->b]);
-		// after attaching, which takes the current length for the rest length
-		dJointSetDBallDistance(joint, spring->rest);
-		dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt));
-		dJointSetDBallParam(joint, dParamCFM, constraint_force_mixing(spring, ode->dt));
-	}
+    const ck_Model *model = ode->model;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        if (model->pinned[spring->a] && model->pinned[spring->b]) continue;
+        dJointID joint = dJointCreateDBall(ode->world, ode->joints);
+        dJointAttach(joint, ode->bodies[spring->a], ode->bodies[spring->b]);
+        // after attaching, which takes the current length for the rest length
+        dJointSetDBallDistance(joint, spring->rest);
+        dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt));
+        dJointSetDBallParam(joint, dParamCFM, constraint_force_mixing(spring, ode->dt));
+    }
 }
 
 static ck_Status build(void **state, const ck_Model *model, const ck_Settings *used, bool quick, ck_Error *error) {
-	OdeWorld *ode = calloc(1, sizeof *ode);
-	if (!ode) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	*ode = (OdeWorld){.model = model, .dt = model->step / used->substeps, .substeps = used->substeps, .quick = quick};
-	if (world_count++ == 0) dInitODE2(0);
-	ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
-	if (ode->bodies) ode->world = dWorldCreate();
-	if (ode->world) ode->joints = dJointGroupCreate(0);
-	if (!ode->joints) {
-		destroy(ode);
-		return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	}
-	dWorldSetGravity(ode->world, model->gravity[0], model->gravity[1], model->gravity[2]);
-	dWorldSetAutoDisableFlag(ode->world, 0);
-	if (quick) dWorldSetQuickStepNumIterations(ode->world, (int)used->iterations);
-	if (quick) dWorldSetQuickStepW(ode->world, used->relaxation);
-	add_bodies(ode);
-	add_joints(ode);
-	*state = ode;
-	return CK_OK;
+    OdeWorld *ode = calloc(1, sizeof *ode);
+    if (!ode) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *ode = (OdeWorld){.model = model, .dt = model->step / used->substeps, .substeps = used->substeps, .quick = quick};
+    if (world_count++ == 0) dInitODE2(0);
+    ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
+    if (ode->bodies) ode->world = dWorldCreate();
+    if (ode->world) ode->joints = dJointGroupCreate(0);
+    if (!ode->joints) {
+        destroy(ode);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    dWorldSetGravity(ode->world, model->gravity[0], model->gravity[1], model->gravity[2]);
+    dWorldSetAutoDisableFlag(ode->world, 0);
+    if (quick) dWorldSetQuickStepNumIterations(ode->world, (int)used->iterations);
+    if (quick) dWorldSetQuickStepW(ode->world, used->relaxation);
+    add_bodies(ode);
+    add_joints(ode);
+    *state = ode;
+    return CK_OK;
 }
 
-static ck_Status create_quick(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
-	translate(model, wanted, used, ledger, true);
-	return build(state, model, used, true, error);
+static ck_Status create_quick(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                              ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger, true);
+    return build(state, model, used, true, error);
 }
 
-static ck_Status create_direct(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
-	translate(model, wanted, used, ledger, false);
-	int rows = row_count(model);
-	if (rows > DIRECT_MAX_ROWS)
-		return ck_fail(error, CK_REFUSED, "dWorldStep's cost grows with the cube of its rows: this scene has %d, the most taken is %d; use ode-quick", rows, DIRECT_MAX_ROWS);
-	return build(state, model, used, false, error);
+static ck_Status create_direct(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                               ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger, false);
+    int rows = row_count(model);
+    if (rows > DIRECT_MAX_ROWS)
+        return ck_fail(
+            error, CK_REFUSED,
+            "dWorldStep's cost grows with the cube of its rows: this scene has %d, the most taken is %d; use ode-quick",
+            rows, DIRECT_MAX_ROWS);
+    return build(state, model, used, false, error);
 }
 
 // NaN or a runaway speed would abort the process inside ODE
 static bool is_safe(const OdeWorld *ode) {
-	for (int i = 0; i < ode->model->particle_count; i++) {
-		const dReal *position = dBodyGetPosition(ode->bodies[i]), *velocity = dBodyGetLinearVel(ode->bodies[i]);
-		if (!(ck_dot(velocity, velocity) < MAX_SPEED * MAX_SPEED) || !isfinite(ck_dot(position, position))) return false;
-	}
-	return true;
+    for (int i = 0; i < ode->model->particle_count; i++) {
+        const dReal *position = dBodyGetPosition(ode->bodies[i]), *velocity = dBodyGetLinearVel(ode->bodies[i]);
+        if (!(ck_dot(velocity, velocity) < MAX_SPEED * MAX_SPEED) || !isfinite(ck_dot(position, position)))
+            return false;
+    }
+    return true;
 }
 
 static ck_StepResult step(void *state) {
-	OdeWorld *ode = state;
-	const double *force = ode->model->force;
-	for (uint32_t i = 0; i < ode->substeps; i++) {
-		if (!is_safe(ode)) return CK_STEP_DIVERGED;
-		for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
-			if (!ode->model->pinned[j]) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
-		// QuickStep shuffles its rows from a seed that is global to the process
-		dRandSetSeed(1);
-		int done = ode->quick ? dWorldQuickStep(ode->world, ode->dt) : dWorldStep(ode->world, ode->dt);
-		if (!done) return CK_STEP_NO_MEMORY;
-	}
-	return is_safe(ode) ? CK_STEP_OK : CK_STEP_DIVERGED;
+    OdeWorld *ode = state;
+    const double *force = ode->model->force;
+    for (uint32_t i = 0; i < ode->substeps; i++) {
+        if (!is_safe(ode)) return CK_STEP_DIVERGED;
+        for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
+            if (!ode->model->pinned[j]) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
+        // QuickStep shuffles its rows from a seed that is global to the process
+        dRandSetSeed(1);
+        int done = ode->quick ? dWorldQuickStep(ode->world, ode->dt) : dWorldStep(ode->world, ode->dt);
+        if (!done) return CK_STEP_NO_MEMORY;
+    }
+    return is_safe(ode) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
 static void read_state(const void *state, double *position, double *velocity) {
-	const OdeWorld *ode = state;
-	for (int i = 0; i < ode->model->particle_count; i++)
-		for (int axis = 0; axis < 3; axis++) {
-			position[3 * i + axis] = dBodyGetPosition(ode->bodies[i])[axis];
-			velocity[3 * i + axis] = dBodyGetLinearVel(ode->bodies[i])[axis];
-		}
+    const OdeWorld *ode = state;
+    for (int i = 0; i < ode->model->particle_count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            position[3 * i + axis] = dBodyGetPosition(ode->bodies[i])[axis];
+            velocity[3 * i + axis] = dBodyGetLinearVel(ode->bodies[i])[axis];
+        }
 }
 
-#define ODE_TERMS \
-	(CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY)
+#define ODE_TERMS                                                                                                      \
+    (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
+     CK_TERM_VELOCITY)
 
 const ck_Engine ck_ode_quick = {
-	.name = "ode-quick",
-	.about = "dWorldQuickStep: springs as soft constraints, projected Gauss-Seidel",
-	.family = "ODE",
-	.version = version,
-	.method = CK_METHOD_SEMI_IMPLICIT_ODE,
-	.terms = ODE_TERMS,
-	.order = 1,
-	.create = create_quick,
-	.step = step,
-	.read = read_state,
-	.destroy = destroy,
+    .name = "ode-quick",
+    .about = "dWorldQuickStep: springs as soft constraints, projected Gauss-Seidel",
+    .family = "ODE",
+    .version = version,
+    .method = CK_METHOD_SEMI_IMPLICIT_ODE,
+    .terms = ODE_TERMS,
+    .order = 1,
+    .create = create_quick,
+    .step = step,
+    .read = read_state,
+    .destroy = destroy,
 };
 
 const ck_Engine ck_ode_direct = {
-	.name = "ode-direct",
-	.about = "dWorldStep: springs as soft constraints, solved exactly",
-	.family = "ODE",
-	.version = version,
-	.method = CK_METHOD_SEMI_IMPLICIT_ODE,
-	.terms = ODE_TERMS,
-	.order = 1,
-	.create = create_direct,
-	.step = step,
-	.read = read_state,
-	.destroy = destroy,
+    .name = "ode-direct",
+    .about = "dWorldStep: springs as soft constraints, solved exactly",
+    .family = "ODE",
+    .version = version,
+    .method = CK_METHOD_SEMI_IMPLICIT_ODE,
+    .terms = ODE_TERMS,
+    .order = 1,
+    .create = create_direct,
+    .step = step,
+    .read = read_state,
+    .destroy = destroy,
 };

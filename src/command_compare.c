@@ -6,40 +6,46 @@
 
 // Where one engine stands apart from the others by more than these do among themselves, says which.
 static void print_outliers(const ck_Comparison *comparison) {
-	for (int i = 0; i < ck_metric_count(); i++) {
-		const ck_Metric *metric = ck_metric_at(i);
-		if (!metric->at || !ck_metric_is_wanted(metric, &comparison->model)) continue;
-		ck_Outlier outlier = ck_outlier_find(comparison, metric);
-		if (outlier.run < 0 || !(outlier.distance > 3 * outlier.rest) || outlier.distance < 1e-9) continue;
-		printf("  outlier in %s: %s, %.1e from the others, which are %.1e apart\n", metric->name, comparison->runs[outlier.run].engine->name,
-			   outlier.distance, outlier.rest);
-	}
+    for (int i = 0; i < ck_metric_count(); i++) {
+        const ck_Metric *metric = ck_metric_at(i);
+        if (!metric->at || !ck_metric_is_wanted(metric, &comparison->model)) continue;
+        ck_Outlier outlier = ck_outlier_find(comparison, metric);
+        if (outlier.run < 0 || !(outlier.distance > 3 * outlier.rest) || outlier.distance < 1e-9) continue;
+        printf("  outlier in %s: %s, %.1e from the others, which are %.1e apart\n", metric->name,
+               comparison->runs[outlier.run].engine->name, outlier.distance, outlier.rest);
+    }
 }
 
 static void show(const ck_Comparison *comparison) {
-	ck_print_summary(comparison);
-	print_outliers(comparison);
-	printf("\n");
-	fflush(stdout);
+    ck_print_summary(comparison);
+    print_outliers(comparison);
+    printf("\n");
+    fflush(stdout);
 }
 
 static void print_help(void) {
-	printf("clothcheck compare [SCENE...] [options]\n\nRuns all engines on all scenes (without SCENE: scenes/*.yaml) and writes\n"
-		   "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (usually out).\n\n%s", ck_arguments_help);
+    printf(
+        "clothcheck compare [SCENE...] [options]\n\nRuns all engines on all scenes (without SCENE: scenes/*.yaml) and "
+        "writes\n"
+        "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (usually out).\n\n%s",
+        ck_arguments_help);
 }
 
 int ck_command_compare(int argc, char **argv) {
-	for (int i = 1; i < argc; i++)
-		if (!strcmp(argv[i], "--help")) {
-			print_help();
-			return CK_EXIT_OK;
-		}
-	ck_Error error = {0};
-	ck_Arguments arguments;
-	ck_Status status = ck_arguments_read(&arguments, argc, argv, &error);
-	if (!arguments.out) arguments.out = "out";
-	int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
-	if (result == CK_EXIT_OK) printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second (median).\nCSVs: %s\n", arguments.out);
-	ck_arguments_free(&arguments);
-	return result;
+    for (int i = 1; i < argc; i++)
+        if (!strcmp(argv[i], "--help")) {
+            print_help();
+            return CK_EXIT_OK;
+        }
+    ck_Error error = {0};
+    ck_Arguments arguments;
+    ck_Status status = ck_arguments_read(&arguments, argc, argv, &error);
+    if (!arguments.out) arguments.out = "out";
+    int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
+    if (result == CK_EXIT_OK)
+        printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second "
+               "(median).\nCSVs: %s\n",
+               arguments.out);
+    ck_arguments_free(&arguments);
+    return result;
 }

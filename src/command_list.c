@@ -5,34 +5,37 @@
 #include <string.h>
 
 static void list_scenes(void) {
-	glob_t found;
-	printf("\nScenes in scenes/:\n");
-	if (glob("scenes/*.yaml", 0, NULL, &found)) return;
-	for (size_t i = 0; i < found.gl_pathc; i++) {
-		ck_Comparison comparison;
-		ck_Error error = {0};
-		if (ck_comparison_load(&comparison, found.gl_pathv[i], &error))
-			printf("  %s\n", error.message);
-		else
-			printf("  %-18s %s\n", comparison.model.name, comparison.scene.file->about ? comparison.scene.file->about : "");
-		ck_comparison_free(&comparison);
-	}
-	globfree(&found);
+    glob_t found;
+    printf("\nScenes in scenes/:\n");
+    if (glob("scenes/*.yaml", 0, NULL, &found)) return;
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        ck_Comparison comparison;
+        ck_Error error = {0};
+        if (ck_comparison_load(&comparison, found.gl_pathv[i], &error))
+            printf("  %s\n", error.message);
+        else
+            printf("  %-18s %s\n", comparison.model.name,
+                   comparison.scene.file->about ? comparison.scene.file->about : "");
+        ck_comparison_free(&comparison);
+    }
+    globfree(&found);
 }
 
 int ck_command_list(int argc, char **argv) {
-	if (argc > 1 && !strcmp(argv[1], "--help")) {
-		printf("clothcheck list\n\nTells the engines, metrics, truths and the scenes in scenes/.\n");
-		return CK_EXIT_OK;
-	}
-	if (argc > 1) return ck_command_fail(CK_BAD_INPUT, &(ck_Error){"list takes no arguments"});
-	printf("Engines:\n");
-	for (int i = 0; i < ck_engine_count(); i++)
-		printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family, ck_engine_at(i)->version());
-	printf("\nMetrics:\n");
-	for (int i = 0; i < ck_metric_count(); i++) printf("  %-16s %s\n", ck_metric_at(i)->name, ck_metric_at(i)->title);
-	printf("\nTruths:\n");
-	for (int i = 0; i < ck_truth_count(); i++) printf("  %-16s %s\n", ck_truth_form_at(i)->name, ck_truth_form_at(i)->source);
-	list_scenes();
-	return CK_EXIT_OK;
+    if (argc > 1 && !strcmp(argv[1], "--help")) {
+        printf("clothcheck list\n\nTells the engines, metrics, truths and the scenes in scenes/.\n");
+        return CK_EXIT_OK;
+    }
+    if (argc > 1) return ck_command_fail(CK_BAD_INPUT, &(ck_Error){"list takes no arguments"});
+    printf("Engines:\n");
+    for (int i = 0; i < ck_engine_count(); i++)
+        printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
+               ck_engine_at(i)->version());
+    printf("\nMetrics:\n");
+    for (int i = 0; i < ck_metric_count(); i++) printf("  %-16s %s\n", ck_metric_at(i)->name, ck_metric_at(i)->title);
+    printf("\nTruths:\n");
+    for (int i = 0; i < ck_truth_count(); i++)
+        printf("  %-16s %s\n", ck_truth_form_at(i)->name, ck_truth_form_at(i)->source);
+    list_scenes();
+    return CK_EXIT_OK;
 }

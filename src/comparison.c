@@ -5,139 +5,144 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 static const ck_Engine *all_engines[CK_SCENE_MAX_ENGINES];
 
 ck_CompareOptions ck_compare_options_default(void) {
-	for (int i = 0; i < ck_engine_count(); i++) all_engines[i] = ck_engine_at(i);
-	return (ck_CompareOptions){
-		.engines = all_engines,
-		.engine_count = ck_engine_count(),
-		.repeats = 5,
-		.budget = 2,
-		.consistency_budget = 10,
-		.seed = 1,
-		.limits = ck_limits_default(),
-	};
+    for (int i = 0; i < ck_engine_count(); i++) all_engines[i] = ck_engine_at(i);
+    return (ck_CompareOptions){
+        .engines = all_engines,
+        .engine_count = ck_engine_count(),
+        .repeats = 5,
+        .budget = 2,
+        .consistency_budget = 10,
+        .seed = 1,
+        .limits = ck_limits_default(),
+    };
 }
 
 static ck_Status check_measure(const ck_Comparison *comparison, ck_Error *error) {
-	for (int i = 0; i < comparison->model.measure_count; i++) {
-		if (ck_metric_find(comparison->model.measure[i])) continue;
-		char path[32], known[300] = "";
-		snprintf(path, sizeof path, "measure[%d]", i);
-		for (int metric = 0, used = 0; metric < ck_metric_count(); metric++)
-			used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", metric ? ", " : "", ck_metric_at(metric)->name);
-		return ck_scene_fail(&comparison->scene, path, error, "there is no metric %s; known are %s", comparison->model.measure[i], known);
-	}
-	return CK_OK;
+    for (int i = 0; i < comparison->model.measure_count; i++) {
+        if (ck_metric_find(comparison->model.measure[i])) continue;
+        char path[32], known[300] = "";
+        snprintf(path, sizeof path, "measure[%d]", i);
+        for (int metric = 0, used = 0; metric < ck_metric_count(); metric++)
+            used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", metric ? ", " : "",
+                             ck_metric_at(metric)->name);
+        return ck_scene_fail(&comparison->scene, path, error, "there is no metric %s; known are %s",
+                             comparison->model.measure[i], known);
+    }
+    return CK_OK;
 }
 
 ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Error *error) {
-	*comparison = (ck_Comparison){.path = path};
-	ck_Status status = ck_scene_load(&comparison->scene, path, error);
-	if (!status) status = ck_model_build(&comparison->model, &comparison->scene, error);
-	if (!status) status = check_measure(comparison, error);
-	if (status) return status;
-	ck_Error why = {0};
-	status = ck_truth_check(&comparison->model, &why);
-	if (status == CK_BAD_INPUT) return ck_scene_fail(&comparison->scene, "truth", error, "%s", why.message);
-	return status ? ck_fail(error, status, "%s", why.message) : CK_OK;
+    *comparison = (ck_Comparison){.path = path};
+    ck_Status status = ck_scene_load(&comparison->scene, path, error);
+    if (!status) status = ck_model_build(&comparison->model, &comparison->scene, error);
+    if (!status) status = check_measure(comparison, error);
+    if (status) return status;
+    ck_Error why = {0};
+    status = ck_truth_check(&comparison->model, &why);
+    if (status == CK_BAD_INPUT) return ck_scene_fail(&comparison->scene, "truth", error, "%s", why.message);
+    return status ? ck_fail(error, status, "%s", why.message) : CK_OK;
 }
 
 // The scene's settings, with what the caller overrides.
 static ck_Settings settings_of(const ck_Engine *engine, const ck_Model *model, const ck_CompareOptions *options) {
-	ck_Settings settings = ck_engine_settings(engine, model);
-	for (int i = 0; i < options->override_count; i++) {
-		const ck_Override *override = &options->overrides[i];
-		if (override->engine != engine) continue;
-		if (override->settings.substeps) settings.substeps = override->settings.substeps;
-		if (override->settings.iterations) settings.iterations = override->settings.iterations;
-		if (override->settings.relaxation > 0) settings.relaxation = override->settings.relaxation;
-	}
-	return settings;
+    ck_Settings settings = ck_engine_settings(engine, model);
+    for (int i = 0; i < options->override_count; i++) {
+        const ck_Override *override = &options->overrides[i];
+        if (override->engine != engine) continue;
+        if (override->settings.substeps) settings.substeps = override->settings.substeps;
+        if (override->settings.iterations) settings.iterations = override->settings.iterations;
+        if (override->settings.relaxation > 0) settings.relaxation = override->settings.relaxation;
+    }
+    return settings;
 }
 
 static void report(const ck_CompareOptions *options, const ck_Comparison *comparison, int run, const char *doing) {
-	if (options->progress) options->progress(comparison->model.name, options->engines[run]->name, doing);
+    if (options->progress) options->progress(comparison->model.name, options->engines[run]->name, doing);
 }
 
 static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
-	for (int i = 0; i < options->engine_count; i++) {
-		ck_Run *run = &comparison->runs[i];
-		ck_Settings wanted = settings_of(options->engines[i], &comparison->model, options);
-		report(options, comparison, i, "measuring");
-		ck_Status status = ck_run_measure(run, &comparison->model, options->engines[i], &wanted, &options->limits, error);
-		comparison->run_count = i + 1;
-		for (int step = 0; step < CK_CONSISTENCY_STEPS; step++) comparison->consistency[i][step] = NAN;
-		if (status) return status;
-		ck_verdict(run, &comparison->truth.reference);
-		if (!ck_comparison_has_path(comparison, i)) continue;
-		status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used, &comparison->truth, error);
-		report(options, comparison, i, "restarting");
-		if (!status && options->consistency_budget > 0)
-			status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget, &options->limits, error);
-		if (status) return status;
-	}
-	return CK_OK;
+    for (int i = 0; i < options->engine_count; i++) {
+        ck_Run *run = &comparison->runs[i];
+        ck_Settings wanted = settings_of(options->engines[i], &comparison->model, options);
+        report(options, comparison, i, "measuring");
+        ck_Status status =
+            ck_run_measure(run, &comparison->model, options->engines[i], &wanted, &options->limits, error);
+        comparison->run_count = i + 1;
+        for (int step = 0; step < CK_CONSISTENCY_STEPS; step++) comparison->consistency[i][step] = NAN;
+        if (status) return status;
+        ck_verdict(run, &comparison->truth.reference);
+        if (!ck_comparison_has_path(comparison, i)) continue;
+        status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used,
+                                      &comparison->truth, error);
+        report(options, comparison, i, "restarting");
+        if (!status && options->consistency_budget > 0)
+            status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget,
+                                            &options->limits, error);
+        if (status) return status;
+    }
+    return CK_OK;
 }
 
 // Repeats in rounds, each in an order of its own: a slow spell of the machine hits all engines alike.
 static ck_Status time_all(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
-	ck_Random random = ck_random_seed(options->seed);
-	int order[CK_SCENE_MAX_ENGINES];
-	for (int i = 0; i < options->engine_count; i++) order[i] = i;
-	for (int round = 0; round < options->repeats; round++) {
-		for (int i = options->engine_count - 1; i > 0; i--) {
-			int other = (int)(ck_random_next(&random) % (uint64_t)(i + 1)), kept = order[i];
-			order[i] = order[other];
-			order[other] = kept;
-		}
-		for (int i = 0; i < options->engine_count; i++) {
-			report(options, comparison, order[i], "timing");
-			ck_Status status = ck_run_time(&comparison->runs[order[i]], options->budget, &options->limits, error);
-			if (status) return status;
-		}
-	}
-	return CK_OK;
+    ck_Random random = ck_random_seed(options->seed);
+    int order[CK_SCENE_MAX_ENGINES];
+    for (int i = 0; i < options->engine_count; i++) order[i] = i;
+    for (int round = 0; round < options->repeats; round++) {
+        for (int i = options->engine_count - 1; i > 0; i--) {
+            int other = (int)(ck_random_next(&random) % (uint64_t)(i + 1)), kept = order[i];
+            order[i] = order[other];
+            order[other] = kept;
+        }
+        for (int i = 0; i < options->engine_count; i++) {
+            report(options, comparison, order[i], "timing");
+            ck_Status status = ck_run_time(&comparison->runs[order[i]], options->budget, &options->limits, error);
+            if (status) return status;
+        }
+    }
+    return CK_OK;
 }
 
 ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
-	comparison->runs = calloc((size_t)options->engine_count + 1, sizeof *comparison->runs);
-	comparison->predictions = calloc((size_t)options->engine_count + 1, sizeof *comparison->predictions);
-	comparison->consistency = calloc((size_t)options->engine_count + 1, sizeof *comparison->consistency);
-	if (!comparison->runs || !comparison->predictions || !comparison->consistency) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	if (options->progress) options->progress(comparison->model.name, "truth", "finding");
-	ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, error);
-	if (!status) status = measure_all(comparison, options, error);
-	if (!status) status = time_all(comparison, options, error);
-	return status;
+    comparison->runs = calloc((size_t)options->engine_count + 1, sizeof *comparison->runs);
+    comparison->predictions = calloc((size_t)options->engine_count + 1, sizeof *comparison->predictions);
+    comparison->consistency = calloc((size_t)options->engine_count + 1, sizeof *comparison->consistency);
+    if (!comparison->runs || !comparison->predictions || !comparison->consistency)
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (options->progress) options->progress(comparison->model.name, "truth", "finding");
+    ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, error);
+    if (!status) status = measure_all(comparison, options, error);
+    if (!status) status = time_all(comparison, options, error);
+    return status;
 }
 
 bool ck_comparison_has_path(const ck_Comparison *comparison, int run) {
-	return comparison->runs[run].trajectory.frame_count == comparison->model.frame_count + 1;
+    return comparison->runs[run].trajectory.frame_count == comparison->model.frame_count + 1;
 }
 
 void ck_comparison_free_runs(ck_Comparison *comparison) {
-	for (int i = 0; i < comparison->run_count; i++) {
-		ck_run_free(&comparison->runs[i]);
-		ck_trajectory_free(&comparison->predictions[i].trajectory);
-	}
-	free(comparison->runs);
-	free(comparison->predictions);
-	free(comparison->consistency);
-	comparison->consistency = NULL;
-	comparison->runs = NULL;
-	comparison->predictions = NULL;
-	comparison->run_count = 0;
-	ck_truth_free(&comparison->truth);
+    for (int i = 0; i < comparison->run_count; i++) {
+        ck_run_free(&comparison->runs[i]);
+        ck_trajectory_free(&comparison->predictions[i].trajectory);
+    }
+    free(comparison->runs);
+    free(comparison->predictions);
+    free(comparison->consistency);
+    comparison->consistency = NULL;
+    comparison->runs = NULL;
+    comparison->predictions = NULL;
+    comparison->run_count = 0;
+    ck_truth_free(&comparison->truth);
 }
 
 void ck_comparison_free(ck_Comparison *comparison) {
-	ck_comparison_free_runs(comparison);
-	ck_model_free(&comparison->model);
-	ck_scene_free(&comparison->scene);
-	*comparison = (ck_Comparison){0};
+    ck_comparison_free_runs(comparison);
+    ck_model_free(&comparison->model);
+    ck_scene_free(&comparison->scene);
+    *comparison = (ck_Comparison){0};
 }

@@ -11,37 +11,37 @@
 #include "truth.h"
 
 typedef struct ck_Override {
-	const ck_Engine *engine;
-	ck_Settings settings; // 0 where it leaves the scene's
+    const ck_Engine *engine;
+    ck_Settings settings; // 0 where it leaves the scene's
 } ck_Override;
 
 typedef struct ck_CompareOptions {
-	const ck_Engine *const *engines;
-	int engine_count;
-	const ck_Override *overrides;
-	int override_count;
-	int repeats;   // timed; 0: no timing
-	double consistency_budget; // s of CPU time that an engine's self-consistency may take; 0: not measured
-	double budget; // s of CPU time per timed repeat at most
-	uint64_t seed; // of the order in which engines are timed
-	ck_Limits limits;
-	const char *cache; // directory of computed truths; NULL: none
-	// Called before each run with what is about to happen; may be NULL.
-	void (*progress)(const char *scene, const char *engine, const char *doing);
+    const ck_Engine *const *engines;
+    int engine_count;
+    const ck_Override *overrides;
+    int override_count;
+    int repeats;               // timed; 0: no timing
+    double consistency_budget; // s of CPU time that an engine's self-consistency may take; 0: not measured
+    double budget;             // s of CPU time per timed repeat at most
+    uint64_t seed;             // of the order in which engines are timed
+    ck_Limits limits;
+    const char *cache; // directory of computed truths; NULL: none
+    // Called before each run with what is about to happen; may be NULL.
+    void (*progress)(const char *scene, const char *engine, const char *doing);
 } ck_CompareOptions;
 
 // All engines of the table, 5 repeats of at most 2 s, self-consistency up to 10 s, seed 1, default limits.
 ck_CompareOptions ck_compare_options_default(void);
 
 typedef struct ck_Comparison {
-	const char *path; // of the scene file, as the user gave it
-	ck_Scene scene;
-	ck_Model model;
-	ck_Truth truth;
-	ck_Run *runs; // [run_count], one an engine, in the order of options.engines
-	ck_Reference *predictions;
-	double (*consistency)[CK_CONSISTENCY_STEPS]; // of each run, NaN where it was not measured
-	int run_count;
+    const char *path; // of the scene file, as the user gave it
+    ck_Scene scene;
+    ck_Model model;
+    ck_Truth truth;
+    ck_Run *runs; // [run_count], one an engine, in the order of options.engines
+    ck_Reference *predictions;
+    double (*consistency)[CK_CONSISTENCY_STEPS]; // of each run, NaN where it was not measured
+    int run_count;
 } ck_Comparison;
 
 // Loads and compiles a scene and checks that it has the truth it names; runs nothing. path must outlive the comparison.

@@ -10,83 +10,86 @@
 #define PIECE_FRAMES 4 // frames of a piece
 
 const int ck_consistency_multiples[CK_CONSISTENCY_STEPS] = {1, 2, 4};
-const char *const ck_consistency_names[CK_CONSISTENCY_STEPS] = {"self_consistency", "self_consistency_2", "self_consistency_4"};
+const char *const ck_consistency_names[CK_CONSISTENCY_STEPS] = {"self_consistency", "self_consistency_2",
+                                                                "self_consistency_4"};
 
 typedef struct Result {
-	double deviation[CK_CONSISTENCY_STEPS]; // sums over pieces
-	int pieces[CK_CONSISTENCY_STEPS];
+    double deviation[CK_CONSISTENCY_STEPS]; // sums over pieces
+    int pieces[CK_CONSISTENCY_STEPS];
 } Result;
 
 typedef struct Job {
-	const ck_Run *run;
-	Result *result;
+    const ck_Run *run;
+    Result *result;
 } Job;
 
 // Steps an engine from the model's start for some frames and reads the last; false where it does not get there.
-static bool advance(const ck_Run *run, const ck_Model *model, uint32_t substeps, int frames, double *position, double *velocity) {
-	ck_Settings wanted = run->used, used;
-	wanted.substeps = substeps;
-	void *state;
-	if (run->engine->create(&state, model, &wanted, &used, NULL, NULL)) return false;
-	bool reached = true;
-	for (int i = 0; i < frames && reached; i++) reached = run->engine->step(state) == CK_STEP_OK;
-	run->engine->read(state, position, velocity);
-	run->engine->destroy(state);
-	return reached;
+static bool advance(const ck_Run *run, const ck_Model *model, uint32_t substeps, int frames, double *position,
+                    double *velocity) {
+    ck_Settings wanted = run->used, used;
+    wanted.substeps = substeps;
+    void *state;
+    if (run->engine->create(&state, model, &wanted, &used, NULL, NULL)) return false;
+    bool reached = true;
+    for (int i = 0; i < frames && reached; i++) reached = run->engine->step(state) == CK_STEP_OK;
+    run->engine->read(state, position, velocity);
+    run->engine->destroy(state);
+    return reached;
 }
 
 static double distance(const ck_Model *model, const double *one, const double *other) {
-	double sum = 0;
-	for (int i = 0; i < 3 * model->particle_count; i++) sum += (one[i] - other[i]) * (one[i] - other[i]);
-	return sqrt(sum / model->particle_count) / model->size;
+    double sum = 0;
+    for (int i = 0; i < 3 * model->particle_count; i++) sum += (one[i] - other[i]) * (one[i] - other[i]);
+    return sqrt(sum / model->particle_count) / model->size;
 }
 
 // One restart: a piece at the finest step, and one at each of the others.
 static void compare_piece(const ck_Run *run, const ck_Model *start, double *memory, Result *result) {
-	size_t count = 3 * (size_t)start->particle_count;
-	double *fine = memory, *coarse = memory + count, *velocity = memory + 2 * count;
-	if (!advance(run, start, FINER * run->used.substeps, PIECE_FRAMES, fine, velocity)) return;
-	for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) {
-		uint32_t multiple = (uint32_t)ck_consistency_multiples[i];
-		if (run->used.substeps % multiple && run->used.substeps < 4 * multiple) continue;
-		if (!advance(run, start, run->used.substeps / multiple, PIECE_FRAMES, coarse, velocity)) continue;
-		result->deviation[i] += distance(start, fine, coarse);
-		result->pieces[i]++;
-	}
+    size_t count = 3 * (size_t)start->particle_count;
+    double *fine = memory, *coarse = memory + count, *velocity = memory + 2 * count;
+    if (!advance(run, start, FINER * run->used.substeps, PIECE_FRAMES, fine, velocity)) return;
+    for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) {
+        uint32_t multiple = (uint32_t)ck_consistency_multiples[i];
+        if (run->used.substeps % multiple && run->used.substeps < 4 * multiple) continue;
+        if (!advance(run, start, run->used.substeps / multiple, PIECE_FRAMES, coarse, velocity)) continue;
+        result->deviation[i] += distance(start, fine, coarse);
+        result->pieces[i]++;
+    }
 }
 
 static void restart_pieces(void *context) {
-	const Job *job = context;
-	const ck_Run *run = job->run;
-	size_t count = 3 * (size_t)run->model->particle_count;
-	double *state = malloc(2 * count * sizeof(double)), *memory = malloc(3 * count * sizeof(double));
-	if (!state || !memory) return;
-	memcpy(state, run->model->position, count * sizeof(double));
-	memcpy(state + count, run->model->velocity, count * sizeof(double));
-	ck_Model start = *run->model;
-	start.position = state;
-	start.velocity = state + count;
-	for (int piece = 0; piece < PIECES; piece++) {
-		compare_piece(run, &start, memory, job->result);
-		// on along the finest run, to the next restart
-		if (!advance(run, &start, FINER * run->used.substeps, APART, memory, memory + count)) break;
-		memcpy(state, memory, 2 * count * sizeof(double));
-	}
-	free(state);
-	free(memory);
+    const Job *job = context;
+    const ck_Run *run = job->run;
+    size_t count = 3 * (size_t)run->model->particle_count;
+    double *state = malloc(2 * count * sizeof(double)), *memory = malloc(3 * count * sizeof(double));
+    if (!state || !memory) return;
+    memcpy(state, run->model->position, count * sizeof(double));
+    memcpy(state + count, run->model->velocity, count * sizeof(double));
+    ck_Model start = *run->model;
+    start.position = state;
+    start.velocity = state + count;
+    for (int piece = 0; piece < PIECES; piece++) {
+        compare_piece(run, &start, memory, job->result);
+        // on along the finest run, to the next restart
+        if (!advance(run, &start, FINER * run->used.substeps, APART, memory, memory + count)) break;
+        memcpy(state, memory, 2 * count * sizeof(double));
+    }
+    free(state);
+    free(memory);
 }
 
-ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error) {
-	for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) deviation[i] = NAN;
-	double frames = PIECES * (FINER * (PIECE_FRAMES + APART) + PIECE_FRAMES * 2);
-	bool complete = run->trajectory.frame_count == run->model->frame_count + 1;
-	if (!complete || run->measured_cpu / run->model->frame_count * frames > budget) return CK_OK;
-	Result *result = ck_shared_allocate(sizeof *result);
-	if (!result) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	ck_ChildResult child;
-	ck_Status status = ck_child_run(&child, restart_pieces, &(Job){run, result}, limits, error);
-	for (int i = 0; i < CK_CONSISTENCY_STEPS && !status && child.end == CK_CHILD_DONE; i++)
-		if (result->pieces[i]) deviation[i] = result->deviation[i] / result->pieces[i];
-	ck_shared_free(result, sizeof *result);
-	return status;
+ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double budget, const ck_Limits *limits,
+                                 ck_Error *error) {
+    for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) deviation[i] = NAN;
+    double frames = PIECES * (FINER * (PIECE_FRAMES + APART) + PIECE_FRAMES * 2);
+    bool complete = run->trajectory.frame_count == run->model->frame_count + 1;
+    if (!complete || run->measured_cpu / run->model->frame_count * frames > budget) return CK_OK;
+    Result *result = ck_shared_allocate(sizeof *result);
+    if (!result) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_ChildResult child;
+    ck_Status status = ck_child_run(&child, restart_pieces, &(Job){run, result}, limits, error);
+    for (int i = 0; i < CK_CONSISTENCY_STEPS && !status && child.end == CK_CHILD_DONE; i++)
+        if (result->pieces[i]) deviation[i] = result->deviation[i] / result->pieces[i];
+    ck_shared_free(result, sizeof *result);
+    return status;
 }

@@ -14,6 +14,7 @@ extern const char *const ck_consistency_names[CK_CONSISTENCY_STEPS];
 //              cannot grow that far or the run would take too long
 //   budget     s of CPU time that it may take, judged by the measured pass
 // Errors: CK_NO_MEMORY, CK_IO. Source: Erez, Tassa, Todorov 2015, Simulation tools for model-based robotics.
-ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error);
+ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double budget, const ck_Limits *limits,
+                                 ck_Error *error);
 
 #endif

@@ -8,15 +8,16 @@
 #include <stdio.h>
 
 typedef struct ck_Csv {
-	FILE *file;
-	char *path, *part; // the name it gets, and the one it is written under
-	int column_count, column;
+    FILE *file;
+    char *path, *part; // the name it gets, and the one it is written under
+    int column_count, column;
 } ck_Csv;
 
 // Starts directory/name with its header.
 //   columns  names, ended by NULL
 // Errors: CK_IO, CK_NO_MEMORY. End with ck_csv_close or ck_csv_discard in any case.
-ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const char *name, const char *const *columns, ck_Error *error);
+ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const char *name, const char *const *columns,
+                      ck_Error *error);
 
 // One field each. Rows end by themselves after the last column. Write errors are told by ck_csv_close.
 // A number is written so that it reads back the same (%.17g); NaN is an empty field.

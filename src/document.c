@@ -9,99 +9,103 @@
 #include <sys/stat.h>
 
 static ck_Status read_text(ck_Document *document, ck_Error *error) {
-	const char *path = document->path;
-	struct stat info;
-	if (stat(path, &info)) return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a scene file", path, strerror(errno));
-	if (!S_ISREG(info.st_mode)) return ck_fail(error, CK_BAD_INPUT, "%s: is not a file; give the path of a scene file", path);
-	if (info.st_size > CK_DOCUMENT_MAX_BYTES)
-		return ck_fail(error, CK_BAD_INPUT, "%s: is %lld bytes long; a scene file has at most %u", path, (long long)info.st_size,
-					   CK_DOCUMENT_MAX_BYTES);
-	FILE *file = fopen(path, "rb");
-	if (!file) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, strerror(errno));
-	document->text = malloc((size_t)info.st_size + 1);
-	if (document->text) document->length = fread(document->text, 1, (size_t)info.st_size, file);
-	ck_Status status = CK_OK;
-	if (!document->text)
-		status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
-	else if (ferror(file))
-		status = ck_fail(error, CK_IO, "%s: cannot be read", path);
-	fclose(file);
-	return status;
+    const char *path = document->path;
+    struct stat info;
+    if (stat(path, &info))
+        return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a scene file", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return ck_fail(error, CK_BAD_INPUT, "%s: is not a file; give the path of a scene file", path);
+    if (info.st_size > CK_DOCUMENT_MAX_BYTES)
+        return ck_fail(error, CK_BAD_INPUT, "%s: is %lld bytes long; a scene file has at most %u", path,
+                       (long long)info.st_size, CK_DOCUMENT_MAX_BYTES);
+    FILE *file = fopen(path, "rb");
+    if (!file) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, strerror(errno));
+    document->text = malloc((size_t)info.st_size + 1);
+    if (document->text) document->length = fread(document->text, 1, (size_t)info.st_size, file);
+    ck_Status status = CK_OK;
+    if (!document->text)
+        status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    else if (ferror(file))
+        status = ck_fail(error, CK_IO, "%s: cannot be read", path);
+    fclose(file);
+    return status;
 }
 
 ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error) {
-	*document = (ck_Document){.path = strdup(path)};
-	if (!document->path) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
-	ck_Status status = read_text(document, error);
-	if (status) return status;
+    *document = (ck_Document){.path = strdup(path)};
+    if (!document->path) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    ck_Status status = read_text(document, error);
+    if (status) return status;
 
-	yaml_parser_t parser;
-	if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
-	yaml_parser_set_input_string(&parser, document->text, document->length);
-	document->has_yaml = yaml_parser_load(&parser, &document->yaml);
-	if (!document->has_yaml)
-		status = ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", path, parser.problem_mark.line + 1,
-						 parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
-	else if (!yaml_document_get_root_node(&document->yaml))
-		status = ck_fail(error, CK_BAD_INPUT, "%s:1:1: is empty; a scene needs name, a body (cloth, rope or network) and time", path);
-	yaml_parser_delete(&parser);
-	return status;
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    yaml_parser_set_input_string(&parser, document->text, document->length);
+    document->has_yaml = yaml_parser_load(&parser, &document->yaml);
+    if (!document->has_yaml)
+        status = ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", path, parser.problem_mark.line + 1,
+                         parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
+    else if (!yaml_document_get_root_node(&document->yaml))
+        status = ck_fail(error, CK_BAD_INPUT,
+                         "%s:1:1: is empty; a scene needs name, a body (cloth, rope or network) and time", path);
+    yaml_parser_delete(&parser);
+    return status;
 }
 
 void ck_document_free(ck_Document *document) {
-	if (document->has_yaml) yaml_document_delete(&document->yaml);
-	free(document->text);
-	free(document->path);
-	*document = (ck_Document){0};
+    if (document->has_yaml) yaml_document_delete(&document->yaml);
+    free(document->text);
+    free(document->path);
+    *document = (ck_Document){0};
 }
 
 static yaml_node_t *child_by_key(yaml_document_t *yaml, yaml_node_t *node, const char *key, size_t length) {
-	if (node->type != YAML_MAPPING_NODE) return NULL;
-	for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
-		yaml_node_t *name = yaml_document_get_node(yaml, pair->key);
-		if (name->type == YAML_SCALAR_NODE && name->data.scalar.length == length &&
-			!memcmp(name->data.scalar.value, key, length))
-			return yaml_document_get_node(yaml, pair->value);
-	}
-	return NULL;
+    if (node->type != YAML_MAPPING_NODE) return NULL;
+    for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
+        yaml_node_t *name = yaml_document_get_node(yaml, pair->key);
+        if (name->type == YAML_SCALAR_NODE && name->data.scalar.length == length &&
+            !memcmp(name->data.scalar.value, key, length))
+            return yaml_document_get_node(yaml, pair->value);
+    }
+    return NULL;
 }
 
 static yaml_node_t *child_by_index(yaml_document_t *yaml, yaml_node_t *node, long index) {
-	if (node->type != YAML_SEQUENCE_NODE) return NULL;
-	long count = node->data.sequence.items.top - node->data.sequence.items.start;
-	if (index < 0 || index >= count) return NULL;
-	return yaml_document_get_node(yaml, node->data.sequence.items.start[index]);
+    if (node->type != YAML_SEQUENCE_NODE) return NULL;
+    long count = node->data.sequence.items.top - node->data.sequence.items.start;
+    if (index < 0 || index >= count) return NULL;
+    return yaml_document_get_node(yaml, node->data.sequence.items.start[index]);
 }
 
 yaml_node_t *ck_document_find(const ck_Document *document, const char *path) {
-	// libyaml's readers take a non-const document but do not write to it
-	yaml_document_t *yaml = (yaml_document_t *)&document->yaml;
-	yaml_node_t *node = yaml_document_get_root_node(yaml);
-	while (node && *path) {
-		yaml_node_t *child;
-		if (*path == '[') {
-			char *end;
-			child = child_by_index(yaml, node, strtol(path + 1, &end, 10));
-			path = *end ? end + 1 : end;
-		} else {
-			path += *path == '.';
-			size_t length = strcspn(path, ".[");
-			child = child_by_key(yaml, node, path, length);
-			path += length;
-		}
-		if (!child) break;
-		node = child;
-	}
-	return node;
+    // libyaml's readers take a non-const document but do not write to it
+    yaml_document_t *yaml = (yaml_document_t *)&document->yaml;
+    yaml_node_t *node = yaml_document_get_root_node(yaml);
+    while (node && *path) {
+        yaml_node_t *child;
+        if (*path == '[') {
+            char *end;
+            child = child_by_index(yaml, node, strtol(path + 1, &end, 10));
+            path = *end ? end + 1 : end;
+        } else {
+            path += *path == '.';
+            size_t length = strcspn(path, ".[");
+            child = child_by_key(yaml, node, path, length);
+            path += length;
+        }
+        if (!child) break;
+        node = child;
+    }
+    return node;
 }
 
-ck_Status ck_document_fail(const ck_Document *document, const yaml_node_t *node, ck_Error *error, const char *format, ...) {
-	char message[sizeof error->message];
-	va_list arguments;
-	va_start(arguments, format);
-	vsnprintf(message, sizeof message, format, arguments);
-	va_end(arguments);
-	if (!node) return ck_fail(error, CK_BAD_INPUT, "%s: %s", document->path, message);
-	return ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: %s", document->path, node->start_mark.line + 1,
-				   node->start_mark.column + 1, message);
+ck_Status ck_document_fail(const ck_Document *document, const yaml_node_t *node, ck_Error *error, const char *format,
+                           ...) {
+    char message[sizeof error->message];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    if (!node) return ck_fail(error, CK_BAD_INPUT, "%s: %s", document->path, message);
+    return ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: %s", document->path, node->start_mark.line + 1,
+                   node->start_mark.column + 1, message);
 }

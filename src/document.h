@@ -11,11 +11,11 @@
 #define CK_DOCUMENT_MAX_BYTES (16u << 20)
 
 typedef struct ck_Document {
-	char *path;
-	unsigned char *text;
-	size_t length;
-	yaml_document_t yaml;
-	int has_yaml;
+    char *path;
+    unsigned char *text;
+    size_t length;
+    yaml_document_t yaml;
+    int has_yaml;
 } ck_Document;
 
 // Reads and parses a file. Refuses what is not a regular file, is empty, or is larger than CK_DOCUMENT_MAX_BYTES.
@@ -27,7 +27,7 @@ void ck_document_free(ck_Document *document);
 yaml_node_t *ck_document_find(const ck_Document *document, const char *path);
 
 // Fails with "file:line:column: message", the place being that of node (NULL: the file alone).
-ck_Status ck_document_fail(const ck_Document *document, const yaml_node_t *node, ck_Error *error, const char *format, ...)
-	__attribute__((format(printf, 4, 5)));
+ck_Status ck_document_fail(const ck_Document *document, const yaml_node_t *node, ck_Error *error, const char *format,
+                           ...) __attribute__((format(printf, 4, 5)));
 
 #endif

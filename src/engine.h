@@ -16,35 +16,35 @@ typedef enum ck_StepResult { CK_STEP_OK, CK_STEP_DIVERGED, CK_STEP_NO_MEMORY } c
 
 // The integrator's family: it decides what theory predicts of an engine's error.
 typedef enum ck_Method {
-	CK_METHOD_NONE,
-	CK_METHOD_VELOCITY_VERLET,   // explicit, second order
-	CK_METHOD_STOERMER_BARS,     // Störmer–Verlet with position constraints, second order in the field
-	CK_METHOD_XPBD,              // symplectic Euler prediction, compliant position constraints
-	CK_METHOD_BULLET_PBD,        // symplectic Euler prediction, Bullet's link projection
-	CK_METHOD_IMPLICIT_EULER,    // backward Euler, Newton
-	CK_METHOD_SEMI_IMPLICIT_ODE, // velocity constraints along directions frozen at the start of the step
+    CK_METHOD_NONE,
+    CK_METHOD_VELOCITY_VERLET,   // explicit, second order
+    CK_METHOD_STOERMER_BARS,     // Störmer–Verlet with position constraints, second order in the field
+    CK_METHOD_XPBD,              // symplectic Euler prediction, compliant position constraints
+    CK_METHOD_BULLET_PBD,        // symplectic Euler prediction, Bullet's link projection
+    CK_METHOD_IMPLICIT_EULER,    // backward Euler, Newton
+    CK_METHOD_SEMI_IMPLICIT_ODE, // velocity constraints along directions frozen at the start of the step
 } ck_Method;
 
 typedef struct ck_Engine {
-	const char *name;
-	const char *about;  // the method in a few words
-	const char *family; // whose code it is: "native", "Bullet", "ODE"
-	const char *(*version)(void);
-	ck_Method method;
-	unsigned terms; // ck_Term bits it can model
-	int order;      // order of convergence of its elastic motion; 0: it models no elasticity
+    const char *name;
+    const char *about;  // the method in a few words
+    const char *family; // whose code it is: "native", "Bullet", "ODE"
+    const char *(*version)(void);
+    ck_Method method;
+    unsigned terms; // ck_Term bits it can model
+    int order;      // order of convergence of its elastic motion; 0: it models no elasticity
 
-	// Translates the model into the engine's own parameters, in one named function, and builds its world.
-	//   wanted  what the user sets, 0 where the engine's rule decides;  used  out, nothing left at 0 that the engine has
-	//   ledger  out, may be NULL
-	// Errors: CK_REFUSED with a reason, CK_NO_MEMORY. *state is only set on success.
-	ck_Status (*create)(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
-						ck_Ledger *ledger, ck_Error *error);
-	// Advances by one frame (model->step).
-	ck_StepResult (*step)(void *state);
-	// Position and velocity at the same time, in the model's particle order: [3*n] m, [3*n] m/s.
-	void (*read)(const void *state, double *position, double *velocity);
-	void (*destroy)(void *state);
+    // Translates the model into the engine's own parameters, in one named function, and builds its world.
+    //   wanted  what the user sets, 0 where the engine's rule decides;  used  out, nothing left at 0 that the engine
+    //   has ledger  out, may be NULL
+    // Errors: CK_REFUSED with a reason, CK_NO_MEMORY. *state is only set on success.
+    ck_Status (*create)(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error);
+    // Advances by one frame (model->step).
+    ck_StepResult (*step)(void *state);
+    // Position and velocity at the same time, in the model's particle order: [3*n] m, [3*n] m/s.
+    void (*read)(const void *state, double *position, double *velocity);
+    void (*destroy)(void *state);
 } ck_Engine;
 
 // The engine table, in the order of the reports.

@@ -1,4 +1,5 @@
-// The rest position of a network as the minimum of its energy, found without any engine's stepping deciding its accuracy.
+// The rest position of a network as the minimum of its energy, found without any engine's stepping deciding its
+// accuracy.
 #ifndef CK_EQUILIBRIUM_H
 #define CK_EQUILIBRIUM_H
 
@@ -9,25 +10,27 @@
 #define CK_EQUILIBRIUM_RESIDUAL 1e-10
 
 typedef struct ck_Equilibrium {
-	double *position; // [3*n] m
-	double residual;  // |Σ force| over free particles / total load
-	double energy;    // J, elastic and of the field
-	int iterations;   // of Newton
-	bool is_minimum;  // the Hessian at position is positive definite
+    double *position; // [3*n] m
+    double residual;  // |Σ force| over free particles / total load
+    double energy;    // J, elastic and of the field
+    int iterations;   // of Newton
+    bool is_minimum;  // the Hessian at position is positive definite
 } ck_Equilibrium;
 
-// Minimises ½k(l − L)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation. The full Hessian, with
-// μ·I added only where it is not positive definite (slack springs make it so); line search on the energy.
+// Minimises ½k(l − L)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation. The full Hessian,
+// with μ·I added only where it is not positive definite (slack springs make it so); line search on the energy.
 //   start  [3*n] m
 // Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders or no pins, or Newton does not get there.
 // Free with ck_equilibrium_free in any case.
-ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start, ck_Error *error);
+ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
+                               ck_Error *error);
 
-// Where the scene's own release comes to rest: damped dynamics into the basin, then Newton. Minima are not unique, and a
-// planar start may sit on a saddle: nudge moves the start of every free coordinate by up to that much, by seed.
+// Where the scene's own release comes to rest: damped dynamics into the basin, then Newton. Minima are not unique, and
+// a planar start may sit on a saddle: nudge moves the start of every free coordinate by up to that much, by seed.
 //   nudge  m
 // Errors: as ck_equilibrium_solve.
-ck_Status ck_equilibrium_release(ck_Equilibrium *equilibrium, const ck_Model *model, double nudge, uint64_t seed, ck_Error *error);
+ck_Status ck_equilibrium_release(ck_Equilibrium *equilibrium, const ck_Model *model, double nudge, uint64_t seed,
+                                 ck_Error *error);
 
 // |Σ force| / total load of any position: how far from equilibrium it is. Negative: out of memory.
 double ck_equilibrium_residual(const ck_Model *model, const double *position);

@@ -11,20 +11,20 @@ extern const char *const ck_match_names[];
 
 // All strings are literals: a row crosses from a child process to its parent by value.
 typedef struct ck_LedgerRow {
-	const char *quantity; // as the scene knows it: "structural stiffness"
-	double wanted;
-	const char *unit;
-	const char *native_parameter; // as the engine's manual knows it: "Material::m_kLST"
-	double native_value;
-	const char *formula; // how one follows from the other
-	ck_Match match;
+    const char *quantity; // as the scene knows it: "structural stiffness"
+    double wanted;
+    const char *unit;
+    const char *native_parameter; // as the engine's manual knows it: "Material::m_kLST"
+    double native_value;
+    const char *formula; // how one follows from the other
+    ck_Match match;
 } ck_LedgerRow;
 
 #define CK_LEDGER_CAPACITY 32
 
 typedef struct ck_Ledger {
-	ck_LedgerRow rows[CK_LEDGER_CAPACITY];
-	int count;
+    ck_LedgerRow rows[CK_LEDGER_CAPACITY];
+    int count;
 } ck_Ledger;
 
 // Adds a row. ledger may be NULL: then nobody asked.

@@ -4,30 +4,34 @@
 #include <string.h>
 
 static const ck_Command commands[] = {
-	{"list", "", "engines, scenes, metrics and truths", ck_command_list},
-	{"run", "SCENE", "one scene, chosen engines: summary and ledger; CSVs with --out", ck_command_run},
-	{"compare", "[SCENE...]", "all engines on all scenes: the six CSVs of a comparison", ck_command_compare},
+    {"list", "", "engines, scenes, metrics and truths", ck_command_list},
+    {"run", "SCENE", "one scene, chosen engines: summary and ledger; CSVs with --out", ck_command_run},
+    {"compare", "[SCENE...]", "all engines on all scenes: the six CSVs of a comparison", ck_command_compare},
 };
 #define COMMANDS (sizeof commands / sizeof *commands)
 
 static void print_help(FILE *out) {
-	fprintf(out, "clothcheck %s: which cloth solver, at which settings, is right for my scene, and what does it cost?\n\n", CK_VERSION);
-	for (size_t i = 0; i < COMMANDS; i++) fprintf(out, "  clothcheck %-8s %-11s %s\n", commands[i].name, commands[i].arguments, commands[i].about);
-	fprintf(out, "\n'clothcheck COMMAND --help' tells a command's options. Exit status: 0 fine, 1 a check failed, 2 wrong usage or input.\n");
+    fprintf(out,
+            "clothcheck %s: which cloth solver, at which settings, is right for my scene, and what does it cost?\n\n",
+            CK_VERSION);
+    for (size_t i = 0; i < COMMANDS; i++)
+        fprintf(out, "  clothcheck %-8s %-11s %s\n", commands[i].name, commands[i].arguments, commands[i].about);
+    fprintf(out, "\n'clothcheck COMMAND --help' tells a command's options. Exit status: 0 fine, 1 a check failed, 2 "
+                 "wrong usage or input.\n");
 }
 
 int main(int argc, char **argv) {
-	if (argc > 1 && !strcmp(argv[1], "--version")) {
-		printf("clothcheck %s\n", CK_VERSION);
-		return CK_EXIT_OK;
-	}
-	if (argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))) {
-		print_help(stdout);
-		return CK_EXIT_OK;
-	}
-	for (size_t i = 0; argc > 1 && i < COMMANDS; i++)
-		if (!strcmp(argv[1], commands[i].name)) return commands[i].run(argc - 1, argv + 1);
-	if (argc > 1) fprintf(stderr, "clothcheck: there is no command %s\n\n", argv[1]);
-	print_help(stderr);
-	return CK_EXIT_USAGE;
+    if (argc > 1 && !strcmp(argv[1], "--version")) {
+        printf("clothcheck %s\n", CK_VERSION);
+        return CK_EXIT_OK;
+    }
+    if (argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))) {
+        print_help(stdout);
+        return CK_EXIT_OK;
+    }
+    for (size_t i = 0; argc > 1 && i < COMMANDS; i++)
+        if (!strcmp(argv[1], commands[i].name)) return commands[i].run(argc - 1, argv + 1);
+    if (argc > 1) fprintf(stderr, "clothcheck: there is no command %s\n\n", argv[1]);
+    print_help(stderr);
+    return CK_EXIT_USAGE;
 }

@@ -7,29 +7,29 @@
 
 // A path to measure against: a sampled truth. A static one has a single frame, which stands for all times.
 typedef struct ck_Reference {
-	ck_Trajectory trajectory; // frame_count 0: there is none
-	bool is_static;
-	int horizon; // the last frame up to which positions can be compared point by point; unused when static
+    ck_Trajectory trajectory; // frame_count 0: there is none
+    bool is_static;
+    int horizon; // the last frame up to which positions can be compared point by point; unused when static
 } ck_Reference;
 
 // What a metric's truth is.
 typedef enum ck_MetricTruth {
-	CK_TRUTH_OF_STATE,   // the same metric of the truth's own states
-	CK_TRUTH_ZERO,       // 0 whenever there is any truth
-	CK_TRUTH_ZERO_STILL, // 0 where the truth is at rest, else none
-	CK_TRUTH_NONE,
+    CK_TRUTH_OF_STATE,   // the same metric of the truth's own states
+    CK_TRUTH_ZERO,       // 0 whenever there is any truth
+    CK_TRUTH_ZERO_STILL, // 0 where the truth is at rest, else none
+    CK_TRUTH_NONE,
 } ck_MetricTruth;
 
 typedef struct ck_Metric {
-	const char *name, *unit, *title;
-	ck_MetricTruth truth;
+    const char *name, *unit, *title;
+    ck_MetricTruth truth;
 
-	// Of one frame; NULL where it only makes sense for a whole run. NaN: does not apply here.
-	double (*at)(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const ck_Reference *reference);
-	// Of a whole run. NULL: that of its last frame.
-	double (*over)(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
-	// How far two engines are apart. NULL: the difference of their values.
-	double (*between)(const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other);
+    // Of one frame; NULL where it only makes sense for a whole run. NaN: does not apply here.
+    double (*at)(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const ck_Reference *reference);
+    // Of a whole run. NULL: that of its last frame.
+    double (*over)(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
+    // How far two engines are apart. NULL: the difference of their values.
+    double (*between)(const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other);
 } ck_Metric;
 
 int ck_metric_count(void);
@@ -42,14 +42,15 @@ const ck_Metric *ck_metric_find(const char *name);
 bool ck_metric_is_wanted(const ck_Metric *metric, const ck_Model *model);
 
 // The metric of a run that wrote all its frames. NaN: does not apply here.
-double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
+double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *trajectory,
+                       const ck_Reference *reference);
 
 // The metric's truth. NaN: none.
 double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_Reference *reference);
 
 // Engine minus other, or the distance of their paths; NaN where either has no value.
-double ck_metric_deviation(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other,
-						   const ck_Reference *reference);
+double ck_metric_deviation(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *one,
+                           const ck_Trajectory *other, const ck_Reference *reference);
 
 // The speed, in m/s, below which a body counts as settled: 0.1 % of √(field·size), or of its start speed without field.
 double ck_metric_still_speed(const ck_Model *model);

@@ -9,186 +9,196 @@
 #include <string.h>
 
 const char *const ck_term_names[CK_TERM_COUNT] = {
-	"springs", "rigid bars", "spring damping", "gravity", "force", "drag", "start velocity", "plane", "sphere", "release",
+    "springs", "rigid bars",     "spring damping", "gravity", "force",
+    "drag",    "start velocity", "plane",          "sphere",  "release",
 };
 
 const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness", "bend stiffness"};
 
 static ck_Status copy_text(char **out, const char *text) {
-	*out = text ? strdup(text) : NULL;
-	return text && !*out ? CK_NO_MEMORY : CK_OK;
+    *out = text ? strdup(text) : NULL;
+    return text && !*out ? CK_NO_MEMORY : CK_OK;
 }
 
 static ck_Status copy_labels(ck_Model *model, const ck_SceneFile *file) {
-	ck_Status status = copy_text(&model->name, file->name);
-	if (!status) status = copy_text(&model->truth, file->truth);
-	model->measure = calloc(file->measure_count + 1, sizeof *model->measure);
-	if (!model->measure) return CK_NO_MEMORY;
-	for (uint32_t i = 0; i < file->measure_count && !status; i++) {
-		status = copy_text(&model->measure[i], file->measure[i]);
-		model->measure_count++;
-	}
-	model->settings = malloc(sizeof file->settings);
-	if (!model->settings) return CK_NO_MEMORY;
-	memcpy(model->settings, file->settings, sizeof file->settings);
-	return status;
+    ck_Status status = copy_text(&model->name, file->name);
+    if (!status) status = copy_text(&model->truth, file->truth);
+    model->measure = calloc(file->measure_count + 1, sizeof *model->measure);
+    if (!model->measure) return CK_NO_MEMORY;
+    for (uint32_t i = 0; i < file->measure_count && !status; i++) {
+        status = copy_text(&model->measure[i], file->measure[i]);
+        model->measure_count++;
+    }
+    model->settings = malloc(sizeof file->settings);
+    if (!model->settings) return CK_NO_MEMORY;
+    memcpy(model->settings, file->settings, sizeof file->settings);
+    return status;
 }
 
 static ck_Status set_time(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-	const ck_SceneTime *time = &scene->file->time;
-	double frames = floor(time->duration / time->step + 0.5);
-	if (frames < 1 || frames > 1e6)
-		return ck_scene_fail(scene, "time", error, "duration / step is %g frames; it must be 1 to 1000000", time->duration / time->step);
-	model->duration = time->duration;
-	model->step = time->step;
-	model->frame_count = (int)frames;
-	return CK_OK;
+    const ck_SceneTime *time = &scene->file->time;
+    double frames = floor(time->duration / time->step + 0.5);
+    if (frames < 1 || frames > 1e6)
+        return ck_scene_fail(scene, "time", error, "duration / step is %g frames; it must be 1 to 1000000",
+                             time->duration / time->step);
+    model->duration = time->duration;
+    model->step = time->step;
+    model->frame_count = (int)frames;
+    return CK_OK;
 }
 
 static ck_Status set_pins(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-	const ck_SceneFile *file = scene->file;
-	int *chosen = malloc(sizeof *chosen * (size_t)model->particle_count);
-	ck_Status status = chosen ? CK_OK : CK_NO_MEMORY;
-	for (uint32_t i = 0; i < file->pins_count && !status; i++) {
-		char path[32];
-		snprintf(path, sizeof path, "pins[%u]", i);
-		int count = 0;
-		status = ck_model_resolve_pin(chosen, &count, model, scene, file->pins[i], path, error);
-		for (int j = 0; j < count; j++) model->pinned[chosen[j]] = true;
-	}
-	free(chosen);
-	for (int i = 0; i < model->particle_count; i++) model->pin_count += model->pinned[i];
-	if (!status && model->truth && !strcmp(model->truth, "equilibrium") && !model->pin_count)
-		return ck_scene_fail(scene, "truth", error, "truth equilibrium needs pins: without them the body falls for ever; add pins or another truth");
-	return status;
+    const ck_SceneFile *file = scene->file;
+    int *chosen = malloc(sizeof *chosen * (size_t)model->particle_count);
+    ck_Status status = chosen ? CK_OK : CK_NO_MEMORY;
+    for (uint32_t i = 0; i < file->pins_count && !status; i++) {
+        char path[32];
+        snprintf(path, sizeof path, "pins[%u]", i);
+        int count = 0;
+        status = ck_model_resolve_pin(chosen, &count, model, scene, file->pins[i], path, error);
+        for (int j = 0; j < count; j++) model->pinned[chosen[j]] = true;
+    }
+    free(chosen);
+    for (int i = 0; i < model->particle_count; i++) model->pin_count += model->pinned[i];
+    if (!status && model->truth && !strcmp(model->truth, "equilibrium") && !model->pin_count)
+        return ck_scene_fail(
+            scene, "truth", error,
+            "truth equilibrium needs pins: without them the body falls for ever; add pins or another truth");
+    return status;
 }
 
 static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
-	const ck_SceneRelease *from = &scene->file->release[index];
-	ck_Release *release = &model->releases[model->release_count++];
-	release->at = from->at;
-	release->particles = malloc(sizeof *release->particles * (size_t)model->particle_count * from->pins_count);
-	if (!release->particles) return CK_NO_MEMORY;
-	for (uint32_t i = 0; i < from->pins_count; i++) {
-		char path[48];
-		snprintf(path, sizeof path, "release[%u].pins[%u]", index, i);
-		int count = 0, *chosen = release->particles + release->particle_count;
-		ck_Status status = ck_model_resolve_pin(chosen, &count, model, scene, from->pins[i], path, error);
-		if (status) return status;
-		for (int j = 0; j < count; j++)
-			if (!model->pinned[chosen[j]])
-				return ck_scene_fail(scene, path, error, "%s is not pinned, so that it cannot be released; add it to pins", from->pins[i]);
-		release->particle_count += count;
-	}
-	return CK_OK;
+    const ck_SceneRelease *from = &scene->file->release[index];
+    ck_Release *release = &model->releases[model->release_count++];
+    release->at = from->at;
+    release->particles = malloc(sizeof *release->particles * (size_t)model->particle_count * from->pins_count);
+    if (!release->particles) return CK_NO_MEMORY;
+    for (uint32_t i = 0; i < from->pins_count; i++) {
+        char path[48];
+        snprintf(path, sizeof path, "release[%u].pins[%u]", index, i);
+        int count = 0, *chosen = release->particles + release->particle_count;
+        ck_Status status = ck_model_resolve_pin(chosen, &count, model, scene, from->pins[i], path, error);
+        if (status) return status;
+        for (int j = 0; j < count; j++)
+            if (!model->pinned[chosen[j]])
+                return ck_scene_fail(scene, path, error,
+                                     "%s is not pinned, so that it cannot be released; add it to pins", from->pins[i]);
+        release->particle_count += count;
+    }
+    return CK_OK;
 }
 
 static ck_Status set_releases(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-	model->releases = calloc(scene->file->release_count + 1, sizeof *model->releases);
-	if (!model->releases) return CK_NO_MEMORY;
-	ck_Status status = CK_OK;
-	for (uint32_t i = 0; i < scene->file->release_count && !status; i++) status = set_release(model, scene, i, error);
-	return status;
+    model->releases = calloc(scene->file->release_count + 1, sizeof *model->releases);
+    if (!model->releases) return CK_NO_MEMORY;
+    ck_Status status = CK_OK;
+    for (uint32_t i = 0; i < scene->file->release_count && !status; i++) status = set_release(model, scene, i, error);
+    return status;
 }
 
 static ck_Status set_collider(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
-	const ck_SceneCollider *from = &scene->file->colliders[index];
-	ck_Collider *collider = &model->colliders[model->collider_count++];
-	if (from->sphere) {
-		*collider = (ck_Collider){.shape = CK_SPHERE, .radius = from->sphere->radius, .restitution = from->sphere->restitution, .friction = from->sphere->friction};
-		memcpy(collider->point, from->sphere->center, sizeof collider->point);
-		return CK_OK;
-	}
-	*collider = (ck_Collider){.shape = CK_PLANE, .restitution = from->plane->restitution, .friction = from->plane->friction};
-	memcpy(collider->point, from->plane->point, sizeof collider->point);
-	char path[48];
-	snprintf(path, sizeof path, "colliders[%u].plane.normal", index);
-	return ck_model_unit(collider->normal, from->plane->normal, scene, path, error);
+    const ck_SceneCollider *from = &scene->file->colliders[index];
+    ck_Collider *collider = &model->colliders[model->collider_count++];
+    if (from->sphere) {
+        *collider = (ck_Collider){.shape = CK_SPHERE,
+                                  .radius = from->sphere->radius,
+                                  .restitution = from->sphere->restitution,
+                                  .friction = from->sphere->friction};
+        memcpy(collider->point, from->sphere->center, sizeof collider->point);
+        return CK_OK;
+    }
+    *collider =
+        (ck_Collider){.shape = CK_PLANE, .restitution = from->plane->restitution, .friction = from->plane->friction};
+    memcpy(collider->point, from->plane->point, sizeof collider->point);
+    char path[48];
+    snprintf(path, sizeof path, "colliders[%u].plane.normal", index);
+    return ck_model_unit(collider->normal, from->plane->normal, scene, path, error);
 }
 
 static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-	model->colliders = calloc(scene->file->colliders_count + 1, sizeof *model->colliders);
-	if (!model->colliders) return CK_NO_MEMORY;
-	ck_Status status = CK_OK;
-	for (uint32_t i = 0; i < scene->file->colliders_count && !status; i++) status = set_collider(model, scene, i, error);
-	return status;
+    model->colliders = calloc(scene->file->colliders_count + 1, sizeof *model->colliders);
+    if (!model->colliders) return CK_NO_MEMORY;
+    ck_Status status = CK_OK;
+    for (uint32_t i = 0; i < scene->file->colliders_count && !status; i++)
+        status = set_collider(model, scene, i, error);
+    return status;
 }
 
 static void set_fields(ck_Model *model, const ck_SceneFile *file) {
-	if (file->gravity) memcpy(model->gravity, file->gravity, sizeof model->gravity);
-	if (file->force) memcpy(model->force, file->force, sizeof model->force);
-	model->drag = file->drag;
-	for (int i = 0; i < model->particle_count; i++)
-		if (file->velocity && !model->pinned[i]) memcpy(model->velocity + 3 * i, file->velocity, 3 * sizeof(double));
+    if (file->gravity) memcpy(model->gravity, file->gravity, sizeof model->gravity);
+    if (file->force) memcpy(model->force, file->force, sizeof model->force);
+    model->drag = file->drag;
+    for (int i = 0; i < model->particle_count; i++)
+        if (file->velocity && !model->pinned[i]) memcpy(model->velocity + 3 * i, file->velocity, 3 * sizeof(double));
 }
 
 static unsigned terms_in_use(const ck_Model *model, const ck_SceneFile *file) {
-	unsigned terms = 0;
-	if (model->spring_count) terms |= CK_TERM_SPRINGS;
-	if (model->spring_count && file->springs->rigid) terms |= CK_TERM_RIGID;
-	if (model->spring_count && file->springs->damping > 0) terms |= CK_TERM_DAMPING;
-	if (ck_length(model->gravity) > 0) terms |= CK_TERM_GRAVITY;
-	if (ck_length(model->force) > 0) terms |= CK_TERM_FORCE;
-	if (model->drag > 0) terms |= CK_TERM_DRAG;
-	if (file->velocity && ck_length(file->velocity) > 0) terms |= CK_TERM_VELOCITY;
-	for (int i = 0; i < model->collider_count; i++)
-		terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
-	if (model->release_count) terms |= CK_TERM_RELEASE;
-	return terms;
+    unsigned terms = 0;
+    if (model->spring_count) terms |= CK_TERM_SPRINGS;
+    if (model->spring_count && file->springs->rigid) terms |= CK_TERM_RIGID;
+    if (model->spring_count && file->springs->damping > 0) terms |= CK_TERM_DAMPING;
+    if (ck_length(model->gravity) > 0) terms |= CK_TERM_GRAVITY;
+    if (ck_length(model->force) > 0) terms |= CK_TERM_FORCE;
+    if (model->drag > 0) terms |= CK_TERM_DRAG;
+    if (file->velocity && ck_length(file->velocity) > 0) terms |= CK_TERM_VELOCITY;
+    for (int i = 0; i < model->collider_count; i++)
+        terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
+    if (model->release_count) terms |= CK_TERM_RELEASE;
+    return terms;
 }
 
 ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-	*model = (ck_Model){0};
-	if (error) error->message[0] = 0;
-	ck_Status status = copy_labels(model, scene->file);
-	if (!status) status = set_time(model, scene, error);
-	if (!status) status = ck_model_build_body(model, scene, error);
-	if (!status) status = set_pins(model, scene, error);
-	if (!status) status = set_releases(model, scene, error);
-	if (!status) status = set_colliders(model, scene, error);
-	if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
-	if (status) return status;
-	ck_model_add_noise(model, scene);
-	set_fields(model, scene->file);
-	model->terms = terms_in_use(model, scene->file);
-	return CK_OK;
+    *model = (ck_Model){0};
+    if (error) error->message[0] = 0;
+    ck_Status status = copy_labels(model, scene->file);
+    if (!status) status = set_time(model, scene, error);
+    if (!status) status = ck_model_build_body(model, scene, error);
+    if (!status) status = set_pins(model, scene, error);
+    if (!status) status = set_releases(model, scene, error);
+    if (!status) status = set_colliders(model, scene, error);
+    if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
+    if (status) return status;
+    ck_model_add_noise(model, scene);
+    set_fields(model, scene->file);
+    model->terms = terms_in_use(model, scene->file);
+    return CK_OK;
 }
 
 void ck_model_free(ck_Model *model) {
-	for (int i = 0; i < model->release_count; i++) free(model->releases[i].particles);
-	for (int i = 0; i < model->measure_count; i++) free(model->measure[i]);
-	free(model->releases);
-	free(model->measure);
-	free(model->settings);
-	free(model->colliders);
-	free(model->springs);
-	free(model->position);
-	free(model->velocity);
-	free(model->mass);
-	free(model->pinned);
-	free(model->truth);
-	free(model->name);
-	*model = (ck_Model){0};
+    for (int i = 0; i < model->release_count; i++) free(model->releases[i].particles);
+    for (int i = 0; i < model->measure_count; i++) free(model->measure[i]);
+    free(model->releases);
+    free(model->measure);
+    free(model->settings);
+    free(model->colliders);
+    free(model->springs);
+    free(model->position);
+    free(model->velocity);
+    free(model->mass);
+    free(model->pinned);
+    free(model->truth);
+    free(model->name);
+    *model = (ck_Model){0};
 }
 
 double ck_model_inverse_mass(const ck_Model *model, int particle) {
-	return model->pinned[particle] ? 0 : 1 / model->mass[particle];
+    return model->pinned[particle] ? 0 : 1 / model->mass[particle];
 }
 
 double ck_model_free_mass(const ck_Model *model) {
-	double sum = 0;
-	for (int i = 0; i < model->particle_count; i++)
-		if (!model->pinned[i]) sum += model->mass[i];
-	return sum;
+    double sum = 0;
+    for (int i = 0; i < model->particle_count; i++)
+        if (!model->pinned[i]) sum += model->mass[i];
+    return sum;
 }
 
 const ck_Spring *ck_model_spring_of_kind(const ck_Model *model, ck_SpringKind kind) {
-	for (int i = 0; i < model->spring_count; i++)
-		if (model->springs[i].kind == kind) return &model->springs[i];
-	return NULL;
+    for (int i = 0; i < model->spring_count; i++)
+        if (model->springs[i].kind == kind) return &model->springs[i];
+    return NULL;
 }
 
 void ck_model_field(const ck_Model *model, int particle, double *acceleration) {
-	for (int axis = 0; axis < 3; axis++)
-		acceleration[axis] = model->gravity[axis] + model->force[axis] / model->mass[particle];
+    for (int axis = 0; axis < 3; axis++)
+        acceleration[axis] = model->gravity[axis] + model->force[axis] / model->mass[particle];
 }

@@ -6,78 +6,84 @@
 #include <string.h>
 
 const char *ck_native_version(void) {
-	return CK_VERSION;
+    return CK_VERSION;
 }
 
 ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Settings *used, ck_Error *error) {
-	size_t vectors = 3 * (size_t)model->particle_count;
-	ck_Native *native = calloc(1, sizeof *native);
-	if (!native) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	*native = (ck_Native){
-		.model = model,
-		.dt = model->step / used->substeps,
-		.substeps = used->substeps,
-		.iterations = used->iterations,
-		.position = malloc(vectors * sizeof(double)),
-		.velocity = malloc(vectors * sizeof(double)),
-		.start = calloc(vectors, sizeof(double)),
-		.other_velocity = calloc(vectors, sizeof(double)),
-		.acceleration = calloc(vectors, sizeof(double)),
-		.inverse_mass = malloc((size_t)model->particle_count * sizeof(double)),
-		.multiplier = calloc((size_t)model->spring_count + 1, sizeof(double)),
-	};
-	if (!native->position || !native->velocity || !native->start || !native->other_velocity || !native->acceleration ||
-		!native->inverse_mass || !native->multiplier) {
-		ck_native_destroy(native);
-		return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	}
-	memcpy(native->position, model->position, vectors * sizeof(double));
-	memcpy(native->velocity, model->velocity, vectors * sizeof(double));
-	for (int i = 0; i < model->particle_count; i++) native->inverse_mass[i] = ck_model_inverse_mass(model, i);
-	*out = native;
-	return CK_OK;
+    size_t vectors = 3 * (size_t)model->particle_count;
+    ck_Native *native = calloc(1, sizeof *native);
+    if (!native) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *native = (ck_Native){
+        .model = model,
+        .dt = model->step / used->substeps,
+        .substeps = used->substeps,
+        .iterations = used->iterations,
+        .position = malloc(vectors * sizeof(double)),
+        .velocity = malloc(vectors * sizeof(double)),
+        .start = calloc(vectors, sizeof(double)),
+        .other_velocity = calloc(vectors, sizeof(double)),
+        .acceleration = calloc(vectors, sizeof(double)),
+        .inverse_mass = malloc((size_t)model->particle_count * sizeof(double)),
+        .multiplier = calloc((size_t)model->spring_count + 1, sizeof(double)),
+    };
+    if (!native->position || !native->velocity || !native->start || !native->other_velocity || !native->acceleration ||
+        !native->inverse_mass || !native->multiplier) {
+        ck_native_destroy(native);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    memcpy(native->position, model->position, vectors * sizeof(double));
+    memcpy(native->velocity, model->velocity, vectors * sizeof(double));
+    for (int i = 0; i < model->particle_count; i++) native->inverse_mass[i] = ck_model_inverse_mass(model, i);
+    *out = native;
+    return CK_OK;
 }
 
 void ck_native_destroy(void *state) {
-	ck_Native *native = state;
-	if (!native) return;
-	free(native->position);
-	free(native->velocity);
-	free(native->start);
-	free(native->other_velocity);
-	free(native->acceleration);
-	free(native->inverse_mass);
-	free(native->multiplier);
-	free(native);
+    ck_Native *native = state;
+    if (!native) return;
+    free(native->position);
+    free(native->velocity);
+    free(native->start);
+    free(native->other_velocity);
+    free(native->acceleration);
+    free(native->inverse_mass);
+    free(native->multiplier);
+    free(native);
 }
 
 void ck_native_read(const void *state, double *position, double *velocity) {
-	const ck_Native *native = state;
-	memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
-	memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
+    const ck_Native *native = state;
+    memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
+    memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
 }
 
 void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula) {
-	double dt = model->step / used->substeps;
-	ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "dt", dt, "step / substeps", CK_EXACT});
-	ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "inverse_mass", 1 / model->mass[0], "1/m, 0 where pinned", CK_EXACT});
-	if (model->terms & CK_TERM_GRAVITY)
-		ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "acceleration", ck_length(model->gravity), "g", CK_EXACT});
-	if (model->terms & CK_TERM_FORCE)
-		ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "acceleration", ck_length(model->force) / model->mass[0], "F/m", CK_EXACT});
-	if (model->terms & CK_TERM_DRAG)
-		ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "drag", model->drag, drag_formula, CK_EXACT});
+    double dt = model->step / used->substeps;
+    ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "dt", dt, "step / substeps", CK_EXACT});
+    ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "inverse_mass", 1 / model->mass[0],
+                                         "1/m, 0 where pinned", CK_EXACT});
+    if (model->terms & CK_TERM_GRAVITY)
+        ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "acceleration",
+                                             ck_length(model->gravity), "g", CK_EXACT});
+    if (model->terms & CK_TERM_FORCE)
+        ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "acceleration",
+                                             ck_length(model->force) / model->mass[0], "F/m", CK_EXACT});
+    if (model->terms & CK_TERM_DRAG)
+        ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "drag", model->drag, drag_formula, CK_EXACT});
 }
 
-void ck_native_ledger_springs(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula, ck_Match match) {
-	for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-		const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
-		if (spring) ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", parameter, spring->stiffness, formula, match});
-	}
+void ck_native_ledger_springs(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula,
+                              ck_Match match) {
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (spring)
+            ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", parameter,
+                                                 spring->stiffness, formula, match});
+    }
 }
 
 bool ck_native_is_finite(const ck_Native *native) {
-	double sum = 0;
-	for (int i = 0; i < 3 * native->model->particle_count; i++) sum += native->position[i] * 0;
-	return sum == 0; // 0·x is 0 for every finite x, and not a number for the others
+    double sum = 0;
+    for (int i = 0; i < 3 * native->model->particle_count; i++) sum += native->position[i] * 0;
+    return sum == 0; // 0·x is 0 for every finite x, and not a number for the others
 }

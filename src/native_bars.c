@@ -1,6 +1,7 @@
 // Störmer–Verlet with rigid bars, relaxed Gauss–Seidel and mass-weighted.
 //
-// velocity holds the leapfrog velocity half a substep behind the positions, other_velocity the one a substep before that.
+// velocity holds the leapfrog velocity half a substep behind the positions, other_velocity the one a substep before
+// that.
 #include "engine_list.h"
 #include "native.h"
 #include "stability.h"
@@ -12,101 +13,105 @@
 // has its length again, to first order. The old direction conserves energy; the new one would dissipate it.
 // Cost: one pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
 static void sweep(ck_Native *native) {
-	const ck_Model *model = native->model;
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *bar = &model->springs[i];
-		double weight_a = native->inverse_mass[bar->a], weight_b = native->inverse_mass[bar->b];
-		if (weight_a + weight_b == 0) continue;
-		double *a = native->position + 3 * bar->a, *b = native->position + 3 * bar->b;
-		double now[3], old[3];
-		ck_subtract(now, b, a);
-		ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
-		double along = ck_dot(now, old), length_squared = ck_dot(now, now);
-		// a bar that turned by more than 60° in one substep is projected along itself instead
-		if (4 * along * along < length_squared * ck_dot(old, old) || along <= 0) {
-			memcpy(old, now, sizeof old);
-			along = length_squared;
-		}
-		if (!(along > 0)) continue;
-		double scale = 0.5 * (length_squared - bar->rest * bar->rest) / (along * (weight_a + weight_b));
-		ck_add_scaled(a, weight_a * scale, old);
-		ck_add_scaled(b, -weight_b * scale, old);
-	}
+    const ck_Model *model = native->model;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *bar = &model->springs[i];
+        double weight_a = native->inverse_mass[bar->a], weight_b = native->inverse_mass[bar->b];
+        if (weight_a + weight_b == 0) continue;
+        double *a = native->position + 3 * bar->a, *b = native->position + 3 * bar->b;
+        double now[3], old[3];
+        ck_subtract(now, b, a);
+        ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
+        double along = ck_dot(now, old), length_squared = ck_dot(now, now);
+        // a bar that turned by more than 60° in one substep is projected along itself instead
+        if (4 * along * along < length_squared * ck_dot(old, old) || along <= 0) {
+            memcpy(old, now, sizeof old);
+            along = length_squared;
+        }
+        if (!(along > 0)) continue;
+        double scale = 0.5 * (length_squared - bar->rest * bar->rest) / (along * (weight_a + weight_b));
+        ck_add_scaled(a, weight_a * scale, old);
+        ck_add_scaled(b, -weight_b * scale, old);
+    }
 }
 
 // v ← (v·(1 − γ·dt/2) + a·dt)/(1 + γ·dt/2);  x' = x + v·dt;  sweeps;  v ← (x' − x)/dt
 static void substep(ck_Native *native) {
-	const ck_Model *model = native->model;
-	const double dt = native->dt, keep = 1 - 0.5 * model->drag * dt, slow = 1 / (1 + 0.5 * model->drag * dt);
-	const size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
-	memcpy(native->start, native->position, bytes);
-	memcpy(native->other_velocity, native->velocity, bytes);
-	for (int i = 0; i < model->particle_count; i++) {
-		if (native->inverse_mass[i] == 0) continue;
-		double field[3];
-		ck_model_field(model, i, field);
-		for (int axis = 3 * i; axis < 3 * i + 3; axis++)
-			native->position[axis] += dt * slow * (keep * native->velocity[axis] + dt * field[axis - 3 * i]);
-	}
-	for (uint32_t i = 0; i < native->iterations; i++) sweep(native);
-	for (int i = 0; i < 3 * model->particle_count; i++) native->velocity[i] = (native->position[i] - native->start[i]) / dt;
+    const ck_Model *model = native->model;
+    const double dt = native->dt, keep = 1 - 0.5 * model->drag * dt, slow = 1 / (1 + 0.5 * model->drag * dt);
+    const size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
+    memcpy(native->start, native->position, bytes);
+    memcpy(native->other_velocity, native->velocity, bytes);
+    for (int i = 0; i < model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        double field[3];
+        ck_model_field(model, i, field);
+        for (int axis = 3 * i; axis < 3 * i + 3; axis++)
+            native->position[axis] += dt * slow * (keep * native->velocity[axis] + dt * field[axis - 3 * i]);
+    }
+    for (uint32_t i = 0; i < native->iterations; i++) sweep(native);
+    for (int i = 0; i < 3 * model->particle_count; i++)
+        native->velocity[i] = (native->position[i] - native->start[i]) / dt;
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
-	*used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
-	if (!used->substeps) used->substeps = ck_stability_substeps(model, ck_stability_bar_time(model, used->iterations));
-	ck_native_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)");
-	bool rigid = model->terms & CK_TERM_RIGID;
-	ck_native_ledger_springs(ledger, model, "rest", rigid ? "bar of fixed length" : "a bar does not stretch: k is not modelled",
-							 rigid ? CK_EXACT : CK_IMPOSSIBLE);
-	if (model->terms & CK_TERM_DAMPING)
-		ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "none", 0, "a bar does not stretch: c is not modelled", CK_IMPOSSIBLE});
+    *used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
+    if (!used->substeps) used->substeps = ck_stability_substeps(model, ck_stability_bar_time(model, used->iterations));
+    ck_native_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)");
+    bool rigid = model->terms & CK_TERM_RIGID;
+    ck_native_ledger_springs(ledger, model, "rest",
+                             rigid ? "bar of fixed length" : "a bar does not stretch: k is not modelled",
+                             rigid ? CK_EXACT : CK_IMPOSSIBLE);
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "none", 0,
+                                             "a bar does not stretch: c is not modelled", CK_IMPOSSIBLE});
 }
 
 // Half a step back, v₋½ = v₀ − a·dt/2: else the whole path would be off by a·t·dt/2.
 static void start_leapfrog(ck_Native *native) {
-	for (int i = 0; i < native->model->particle_count; i++) {
-		if (native->inverse_mass[i] == 0) continue;
-		double field[3];
-		ck_model_field(native->model, i, field);
-		ck_add_scaled(field, -native->model->drag, native->velocity + 3 * i);
-		memcpy(native->other_velocity + 3 * i, native->velocity + 3 * i, 3 * sizeof(double));
-		ck_add_scaled(native->velocity + 3 * i, -0.5 * native->dt, field);
-		ck_add_scaled(native->other_velocity + 3 * i, -1.5 * native->dt, field);
-	}
+    for (int i = 0; i < native->model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        double field[3];
+        ck_model_field(native->model, i, field);
+        ck_add_scaled(field, -native->model->drag, native->velocity + 3 * i);
+        memcpy(native->other_velocity + 3 * i, native->velocity + 3 * i, 3 * sizeof(double));
+        ck_add_scaled(native->velocity + 3 * i, -0.5 * native->dt, field);
+        ck_add_scaled(native->other_velocity + 3 * i, -1.5 * native->dt, field);
+    }
 }
 
-static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
-	translate(model, wanted, used, ledger);
-	ck_Status status = ck_native_create((ck_Native **)state, model, used, error);
-	if (!status) start_leapfrog(*state);
-	return status;
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger);
+    ck_Status status = ck_native_create((ck_Native **)state, model, used, error);
+    if (!status) start_leapfrog(*state);
+    return status;
 }
 
 static ck_StepResult step(void *state) {
-	ck_Native *native = state;
-	for (uint32_t i = 0; i < native->substeps; i++) substep(native);
-	return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+    ck_Native *native = state;
+    for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
 // v(t) = v₋½ + a·dt/2, with the last substep's whole acceleration (v₋½ − v₋₁½)/dt
 static void read_state(const void *state, double *position, double *velocity) {
-	const ck_Native *native = state;
-	memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
-	for (int i = 0; i < 3 * native->model->particle_count; i++)
-		velocity[i] = native->velocity[i] + 0.5 * (native->velocity[i] - native->other_velocity[i]);
+    const ck_Native *native = state;
+    memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
+    for (int i = 0; i < 3 * native->model->particle_count; i++)
+        velocity[i] = native->velocity[i] + 0.5 * (native->velocity[i] - native->other_velocity[i]);
 }
 
 const ck_Engine ck_native_bars = {
-	.name = "native-bars",
-	.about = "rigid bars, Stoermer-Verlet with Gauss-Seidel relaxation",
-	.family = "native",
-	.version = ck_native_version,
-	.method = CK_METHOD_STOERMER_BARS,
-	.terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
-	.order = 0,
-	.create = create,
-	.step = step,
-	.read = read_state,
-	.destroy = ck_native_destroy,
+    .name = "native-bars",
+    .about = "rigid bars, Stoermer-Verlet with Gauss-Seidel relaxation",
+    .family = "native",
+    .version = ck_native_version,
+    .method = CK_METHOD_STOERMER_BARS,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
+    .order = 0,
+    .create = create,
+    .step = step,
+    .read = read_state,
+    .destroy = ck_native_destroy,
 };

@@ -11,90 +11,92 @@
 //   acceleration        [3*n] out, m/s²
 // Cost: one pass over springs, one over particles. Cannot fail.
 static void accelerate(const ck_Native *native, double *acceleration) {
-	const ck_Model *model = native->model;
-	const double *position = native->position, *velocity = native->other_velocity;
-	memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *spring = &model->springs[i];
-		double d[3], v[3];
-		ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
-		ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
-		double length = ck_length(d);
-		if (!(length > 0)) continue; // coincident particles have no direction to push in
-		double tension = spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) / length;
-		ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
-		ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
-	}
-	for (int i = 0; i < model->particle_count; i++) {
-		if (native->inverse_mass[i] == 0) continue;
-		double field[3];
-		ck_model_field(model, i, field);
-		ck_add_scaled(acceleration + 3 * i, 1, field);
-		ck_add_scaled(acceleration + 3 * i, -model->drag, velocity + 3 * i);
-	}
+    const ck_Model *model = native->model;
+    const double *position = native->position, *velocity = native->other_velocity;
+    memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double d[3], v[3];
+        ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
+        ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
+        double length = ck_length(d);
+        if (!(length > 0)) continue; // coincident particles have no direction to push in
+        double tension = spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) / length;
+        ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
+        ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
+    }
+    for (int i = 0; i < model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        double field[3];
+        ck_model_field(model, i, field);
+        ck_add_scaled(acceleration + 3 * i, 1, field);
+        ck_add_scaled(acceleration + 3 * i, -model->drag, velocity + 3 * i);
+    }
 }
 
 // x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  a' = a(x, v*);  v ← v + (a + a')·dt/2
 // With the velocity predicted, damping keeps the second order; with last step's velocity it would be first.
 // Source: Groot and Warren 1997, eq. 10 with λ = 1.
 static void substep(ck_Native *native) {
-	const double dt = native->dt;
-	const int count = 3 * native->model->particle_count;
-	double *position = native->position, *velocity = native->velocity, *predicted = native->other_velocity;
-	double *acceleration = native->acceleration;
-	for (int i = 0; i < count; i++) {
-		position[i] += dt * velocity[i] + 0.5 * dt * dt * acceleration[i];
-		predicted[i] = velocity[i] + dt * acceleration[i];
-		velocity[i] += 0.5 * dt * acceleration[i];
-	}
-	accelerate(native, acceleration);
-	for (int i = 0; i < count; i++) velocity[i] += 0.5 * dt * acceleration[i];
+    const double dt = native->dt;
+    const int count = 3 * native->model->particle_count;
+    double *position = native->position, *velocity = native->velocity, *predicted = native->other_velocity;
+    double *acceleration = native->acceleration;
+    for (int i = 0; i < count; i++) {
+        position[i] += dt * velocity[i] + 0.5 * dt * dt * acceleration[i];
+        predicted[i] = velocity[i] + dt * acceleration[i];
+        velocity[i] += 0.5 * dt * acceleration[i];
+    }
+    accelerate(native, acceleration);
+    for (int i = 0; i < count; i++) velocity[i] += 0.5 * dt * acceleration[i];
 }
 
 // Time step: half of the stability bound 2/ω·(√(1 + ζ²) − ζ), so that a cloth that folds (up to √2 in ω) stays inside.
 static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
-	double frequency;
-	ck_Status status = ck_stability_frequency(model, &frequency);
-	if (status) return status;
-	double zeta = 0.5 * frequency * ck_stability_damping_time(model) + 0.5 * model->drag / fmax(frequency, 1e-300);
-	double limit = frequency > 0 ? 0.5 * 2 / frequency * (sqrt(1 + zeta * zeta) - zeta) : INFINITY;
-	*used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
-	ck_native_ledger(ledger, model, used, "force -drag*m*v, v predicted");
-	ck_native_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
-	if (model->terms & CK_TERM_DAMPING)
-		ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "damping", model->springs[0].damping, "c along the spring", CK_EXACT});
-	return CK_OK;
+    double frequency;
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    if (status) return status;
+    double zeta = 0.5 * frequency * ck_stability_damping_time(model) + 0.5 * model->drag / fmax(frequency, 1e-300);
+    double limit = frequency > 0 ? 0.5 * 2 / frequency * (sqrt(1 + zeta * zeta) - zeta) : INFINITY;
+    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
+    ck_native_ledger(ledger, model, used, "force -drag*m*v, v predicted");
+    ck_native_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "damping",
+                                             model->springs[0].damping, "c along the spring", CK_EXACT});
+    return CK_OK;
 }
 
-static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
-	ck_Status status = translate(model, wanted, used, ledger);
-	if (status) return ck_fail(error, status, "out of memory");
-	ck_Native *native;
-	status = ck_native_create(&native, model, used, error);
-	if (status) return status;
-	// the first acceleration belongs to the start, or the first step would lose half a dt of it
-	memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
-	accelerate(native, native->acceleration);
-	*state = native;
-	return CK_OK;
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    ck_Status status = translate(model, wanted, used, ledger);
+    if (status) return ck_fail(error, status, "out of memory");
+    ck_Native *native;
+    status = ck_native_create(&native, model, used, error);
+    if (status) return status;
+    // the first acceleration belongs to the start, or the first step would lose half a dt of it
+    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
+    accelerate(native, native->acceleration);
+    *state = native;
+    return CK_OK;
 }
 
 static ck_StepResult step(void *state) {
-	ck_Native *native = state;
-	for (uint32_t i = 0; i < native->substeps; i++) substep(native);
-	return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+    ck_Native *native = state;
+    for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
 const ck_Engine ck_native_verlet = {
-	.name = "native-verlet",
-	.about = "damped springs, velocity Verlet with predicted velocity",
-	.family = "native",
-	.version = ck_native_version,
-	.method = CK_METHOD_VELOCITY_VERLET,
-	.terms = CK_NATIVE_TERMS,
-	.order = 2,
-	.create = create,
-	.step = step,
-	.read = ck_native_read,
-	.destroy = ck_native_destroy,
+    .name = "native-verlet",
+    .about = "damped springs, velocity Verlet with predicted velocity",
+    .family = "native",
+    .version = ck_native_version,
+    .method = CK_METHOD_VELOCITY_VERLET,
+    .terms = CK_NATIVE_TERMS,
+    .order = 2,
+    .create = create,
+    .step = step,
+    .read = ck_native_read,
+    .destroy = ck_native_destroy,
 };

@@ -10,96 +10,101 @@
 // A rigid bar has α̃ = γ̃ = 0. Cost: one pass over springs.
 // Source: Macklin, Müller, Chentanez 2016, eq. 18 and 26.
 static void sweep(ck_Native *native) {
-	const ck_Model *model = native->model;
-	const double dt = native->dt;
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *spring = &model->springs[i];
-		double weight_a = native->inverse_mass[spring->a], weight_b = native->inverse_mass[spring->b];
-		if (weight_a + weight_b == 0) continue;
-		double *a = native->position + 3 * spring->a, *b = native->position + 3 * spring->b;
-		double d[3], moved[3];
-		ck_subtract(d, b, a);
-		double length = ck_length(d);
-		if (!(length > 0)) continue;
-		double compliance = 1 / (spring->stiffness * dt * dt), damping = spring->damping / (spring->stiffness * dt);
-		for (int axis = 0; axis < 3; axis++)
-			moved[axis] = d[axis] - (native->start[3 * spring->b + axis] - native->start[3 * spring->a + axis]);
-		double residual = length - spring->rest + compliance * native->multiplier[i] + damping * ck_dot(moved, d) / length;
-		double change = -residual / ((1 + damping) * (weight_a + weight_b) + compliance);
-		native->multiplier[i] += change;
-		ck_add_scaled(a, -weight_a * change / length, d);
-		ck_add_scaled(b, weight_b * change / length, d);
-	}
+    const ck_Model *model = native->model;
+    const double dt = native->dt;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double weight_a = native->inverse_mass[spring->a], weight_b = native->inverse_mass[spring->b];
+        if (weight_a + weight_b == 0) continue;
+        double *a = native->position + 3 * spring->a, *b = native->position + 3 * spring->b;
+        double d[3], moved[3];
+        ck_subtract(d, b, a);
+        double length = ck_length(d);
+        if (!(length > 0)) continue;
+        double compliance = 1 / (spring->stiffness * dt * dt), damping = spring->damping / (spring->stiffness * dt);
+        for (int axis = 0; axis < 3; axis++)
+            moved[axis] = d[axis] - (native->start[3 * spring->b + axis] - native->start[3 * spring->a + axis]);
+        double residual =
+            length - spring->rest + compliance * native->multiplier[i] + damping * ck_dot(moved, d) / length;
+        double change = -residual / ((1 + damping) * (weight_a + weight_b) + compliance);
+        native->multiplier[i] += change;
+        ck_add_scaled(a, -weight_a * change / length, d);
+        ck_add_scaled(b, weight_b * change / length, d);
+    }
 }
 
 // x ← x + v·dt + a·dt²;  sweeps;  v ← (x − x_start)/dt/(1 + γ·dt)
 // Drag comes last: before the sweeps it would also ease gravity's push, and a body at rest would hang too high.
 static void substep(ck_Native *native) {
-	const ck_Model *model = native->model;
-	const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
-	memcpy(native->start, native->position, 3 * sizeof(double) * (size_t)model->particle_count);
-	memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
-	for (int i = 0; i < model->particle_count; i++) {
-		if (native->inverse_mass[i] == 0) continue;
-		double field[3];
-		ck_model_field(model, i, field);
-		ck_add_scaled(native->position + 3 * i, dt, native->velocity + 3 * i);
-		ck_add_scaled(native->position + 3 * i, dt * dt, field);
-	}
-	for (uint32_t i = 0; i < native->iterations; i++) sweep(native);
-	for (int i = 0; i < 3 * model->particle_count; i++)
-		native->velocity[i] = keep * (native->position[i] - native->start[i]) / dt;
+    const ck_Model *model = native->model;
+    const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
+    memcpy(native->start, native->position, 3 * sizeof(double) * (size_t)model->particle_count);
+    memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
+    for (int i = 0; i < model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        double field[3];
+        ck_model_field(model, i, field);
+        ck_add_scaled(native->position + 3 * i, dt, native->velocity + 3 * i);
+        ck_add_scaled(native->position + 3 * i, dt * dt, field);
+    }
+    for (uint32_t i = 0; i < native->iterations; i++) sweep(native);
+    for (int i = 0; i < 3 * model->particle_count; i++)
+        native->velocity[i] = keep * (native->position[i] - native->start[i]) / dt;
 }
 
 // Time step: with 1/k_eff = 1/k + w·(dt² + c·dt/k)/iterations, where damping softens too, a spring is at most 0.5 % too
 // soft: k·dt² + c·dt ≤ 0.005·iterations/w.
 static double time_step_limit(const ck_Model *model, uint32_t iterations) {
-	if (model->terms & CK_TERM_RIGID) return ck_stability_bar_time(model, iterations);
-	double limit = INFINITY, allowed = 0.005 * iterations / ck_stability_lightness(model);
-	for (int i = 0; i < model->spring_count; i++) {
-		double k = model->springs[i].stiffness, c = model->springs[i].damping;
-		limit = fmin(limit, 2 * allowed / (c + sqrt(c * c + 4 * k * allowed)));
-	}
-	return limit;
+    if (model->terms & CK_TERM_RIGID) return ck_stability_bar_time(model, iterations);
+    double limit = INFINITY, allowed = 0.005 * iterations / ck_stability_lightness(model);
+    for (int i = 0; i < model->spring_count; i++) {
+        double k = model->springs[i].stiffness, c = model->springs[i].damping;
+        limit = fmin(limit, 2 * allowed / (c + sqrt(c * c + 4 * k * allowed)));
+    }
+    return limit;
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
-	*used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
-	if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
-	double dt = model->step / used->substeps;
-	ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps");
-	for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-		const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
-		if (!spring) continue;
-		ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "compliance", 1 / (spring->stiffness * dt * dt),
-											 "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations", CK_APPROXIMATE});
-	}
-	if (model->terms & CK_TERM_DAMPING)
-		ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
-											 model->springs[0].damping / (model->springs[0].stiffness * dt), "c/(k*dt)", CK_APPROXIMATE});
+    *used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
+    if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
+    double dt = model->step / used->substeps;
+    ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps");
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (!spring) continue;
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "compliance",
+                                     1 / (spring->stiffness * dt * dt),
+                                     "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations", CK_APPROXIMATE});
+    }
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
+                                             model->springs[0].damping / (model->springs[0].stiffness * dt), "c/(k*dt)",
+                                             CK_APPROXIMATE});
 }
 
-static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
-	translate(model, wanted, used, ledger);
-	return ck_native_create((ck_Native **)state, model, used, error);
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger);
+    return ck_native_create((ck_Native **)state, model, used, error);
 }
 
 static ck_StepResult step(void *state) {
-	ck_Native *native = state;
-	for (uint32_t i = 0; i < native->substeps; i++) substep(native);
-	return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+    ck_Native *native = state;
+    for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
 const ck_Engine ck_native_xpbd = {
-	.name = "native-xpbd",
-	.about = "compliant position constraints, one iteration per small substep",
-	.family = "native",
-	.version = ck_native_version,
-	.method = CK_METHOD_XPBD,
-	.terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
-	.order = 1,
-	.create = create,
-	.step = step,
-	.read = ck_native_read,
-	.destroy = ck_native_destroy,
+    .name = "native-xpbd",
+    .about = "compliant position constraints, one iteration per small substep",
+    .family = "native",
+    .version = ck_native_version,
+    .method = CK_METHOD_XPBD,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
+    .order = 1,
+    .create = create,
+    .step = step,
+    .read = ck_native_read,
+    .destroy = ck_native_destroy,
 };

@@ -5,9 +5,9 @@
 #include "comparison.h"
 
 typedef struct ck_Outlier {
-	int run;         // index of the run farthest from the others; −1: fewer than three engines have a value
-	double distance; // median distance of it to the others
-	double rest;     // median distance of the others among themselves
+    int run;         // index of the run farthest from the others; −1: fewer than three engines have a value
+    double distance; // median distance of it to the others
+    double rest;     // median distance of the others among themselves
 } ck_Outlier;
 
 // Engines without a method (the null engine) and runs without a path do not count.

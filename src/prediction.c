@@ -6,99 +6,104 @@
 #include <string.h>
 
 typedef struct Theory {
-	ck_Method method;
-	const char *truth;
-	// Writes the state at time s; false where the theory does not reach.
-	bool (*at)(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity);
+    ck_Method method;
+    const char *truth;
+    // Writes the state at time s; false where the theory does not reach.
+    bool (*at)(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity);
 } Theory;
 
 static double time_step(const ck_Model *model, const ck_Settings *used) {
-	return model->step / used->substeps;
+    return model->step / used->substeps;
 }
 
 // A second-order scheme falls exactly.
-static bool fall_exactly(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	(void)used;
-	return ck_truth_form_find("free_fall")->at(model, time, position, velocity, NULL) == CK_OK;
+static bool fall_exactly(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                         double *velocity) {
+    (void)used;
+    return ck_truth_form_find("free_fall")->at(model, time, position, velocity, NULL) == CK_OK;
 }
 
 // Symplectic or backward Euler adds the step's whole g·dt before it moves: ahead by g·t·dt/2.
-static bool fall_ahead(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	if (!fall_exactly(model, used, time, position, velocity)) return false;
-	for (int i = 0; i < model->particle_count; i++) {
-		double field[3];
-		ck_model_field(model, i, field);
-		ck_add_scaled(position + 3 * i, 0.5 * time * time_step(model, used), field);
-	}
-	return true;
+static bool fall_ahead(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                       double *velocity) {
+    if (!fall_exactly(model, used, time, position, velocity)) return false;
+    for (int i = 0; i < model->particle_count; i++) {
+        double field[3];
+        ck_model_field(model, i, field);
+        ck_add_scaled(position + 3 * i, 0.5 * time * time_step(model, used), field);
+    }
+    return true;
 }
 
-// One substep of a fall with drag: distance, speed and carried acceleration under a unit field, by superposition with the
-// start velocity as a second, fieldless fall.
+// One substep of a fall with drag: distance, speed and carried acceleration under a unit field, by superposition with
+// the start velocity as a second, fieldless fall.
 typedef struct Fall {
-	double field, drag, dt;
-	double x, v, a;
+    double field, drag, dt;
+    double x, v, a;
 } Fall;
 
 static void fall_verlet(Fall *f) {
-	double a = f->a;
-	f->x += f->dt * f->v + 0.5 * f->dt * f->dt * a;
-	f->a = f->field - f->drag * (f->v + f->dt * a);
-	f->v += 0.5 * f->dt * (a + f->a);
+    double a = f->a;
+    f->x += f->dt * f->v + 0.5 * f->dt * f->dt * a;
+    f->a = f->field - f->drag * (f->v + f->dt * a);
+    f->v += 0.5 * f->dt * (a + f->a);
 }
 
 // v is half a substep behind x, as the method holds it
 static void fall_leapfrog(Fall *f) {
-	f->v = (f->v * (1 - 0.5 * f->drag * f->dt) + f->field * f->dt) / (1 + 0.5 * f->drag * f->dt);
-	f->x += f->dt * f->v;
+    f->v = (f->v * (1 - 0.5 * f->drag * f->dt) + f->field * f->dt) / (1 + 0.5 * f->drag * f->dt);
+    f->x += f->dt * f->v;
 }
 
 // XPBD's and Bullet's kDP: moves by the whole of v + g·dt, then damps
 static void fall_then_damp(Fall *f) {
-	f->v += f->field * f->dt;
-	f->x += f->dt * f->v;
-	f->v /= 1 + f->drag * f->dt;
+    f->v += f->field * f->dt;
+    f->x += f->dt * f->v;
+    f->v /= 1 + f->drag * f->dt;
 }
 
 static void damp_then_fall(Fall *f) {
-	f->v = (f->v + f->field * f->dt) / (1 + f->drag * f->dt);
-	f->x += f->dt * f->v;
+    f->v = (f->v + f->field * f->dt) / (1 + f->drag * f->dt);
+    f->x += f->dt * f->v;
 }
 
 // ODE's LinearDamping takes h·drag off the speed once it has moved
 static void fall_then_scale(Fall *f) {
-	f->v += f->field * f->dt;
-	f->x += f->dt * f->v;
-	f->v *= 1 - f->drag * f->dt;
+    f->v += f->field * f->dt;
+    f->x += f->dt * f->v;
+    f->v *= 1 - f->drag * f->dt;
 }
 
-static Fall fall_for(const ck_Model *model, const ck_Settings *used, double time, double field, double speed, void (*substep)(Fall *)) {
-	Fall f = {.field = field, .drag = model->drag, .dt = time_step(model, used), .v = speed};
-	f.a = field - f.drag * speed;
-	if (substep == fall_leapfrog) f.v -= 0.5 * f.dt * f.a;
-	for (long step = lround(time / f.dt); step > 0; step--) substep(&f);
-	return f;
+static Fall fall_for(const ck_Model *model, const ck_Settings *used, double time, double field, double speed,
+                     void (*substep)(Fall *)) {
+    Fall f = {.field = field, .drag = model->drag, .dt = time_step(model, used), .v = speed};
+    f.a = field - f.drag * speed;
+    if (substep == fall_leapfrog) f.v -= 0.5 * f.dt * f.a;
+    for (long step = lround(time / f.dt); step > 0; step--) substep(&f);
+    return f;
 }
 
-static bool fall_with_drag(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity, void (*substep)(Fall *)) {
-	Fall pulled = fall_for(model, used, time, 1, 0, substep), thrown = fall_for(model, used, time, 0, 1, substep);
-	memcpy(position, model->position, 3 * sizeof(double) * (size_t)model->particle_count);
-	memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
-	for (int i = 0; i < model->particle_count; i++) {
-		double field[3];
-		ck_model_field(model, i, field);
-		ck_add_scaled(position + 3 * i, pulled.x, field);
-		ck_add_scaled(position + 3 * i, thrown.x, model->velocity + 3 * i);
-		ck_add_scaled(velocity + 3 * i, pulled.v, field);
-		ck_add_scaled(velocity + 3 * i, thrown.v, model->velocity + 3 * i);
-	}
-	return true;
+static bool fall_with_drag(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                           double *velocity, void (*substep)(Fall *)) {
+    Fall pulled = fall_for(model, used, time, 1, 0, substep), thrown = fall_for(model, used, time, 0, 1, substep);
+    memcpy(position, model->position, 3 * sizeof(double) * (size_t)model->particle_count);
+    memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+    for (int i = 0; i < model->particle_count; i++) {
+        double field[3];
+        ck_model_field(model, i, field);
+        ck_add_scaled(position + 3 * i, pulled.x, field);
+        ck_add_scaled(position + 3 * i, thrown.x, model->velocity + 3 * i);
+        ck_add_scaled(velocity + 3 * i, pulled.v, field);
+        ck_add_scaled(velocity + 3 * i, thrown.v, model->velocity + 3 * i);
+    }
+    return true;
 }
 
-#define FALL_WITH_DRAG(name, substep) \
-	static bool name(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) { \
-		return fall_with_drag(model, used, time, position, velocity, substep); \
-	}
+#define FALL_WITH_DRAG(name, substep)                                                                                  \
+    static bool name(const ck_Model *model, const ck_Settings *used, double time, double *position,                    \
+                     double *velocity) {                                                                               \
+        return fall_with_drag(model, used, time, position, velocity, substep);                                         \
+    }
 
 FALL_WITH_DRAG(drag_verlet, fall_verlet)
 FALL_WITH_DRAG(drag_leapfrog, fall_leapfrog)
@@ -108,209 +113,235 @@ FALL_WITH_DRAG(drag_then_scale, fall_then_scale)
 
 // One substep of a damped oscillator: u, v and the acceleration that the method carries over, in m, m/s and m/s².
 typedef struct Oscillator {
-	double k, c, m, rest, dt;
-	uint32_t iterations;
-	double u, v, a;
+    double k, c, m, rest, dt;
+    uint32_t iterations;
+    double u, v, a;
 } Oscillator;
 
 // m·v' = m·v − dt·(k·u' + c·v'), u' = u + dt·v'.
 static void backward_euler(Oscillator *o) {
-	o->v = (o->m * o->v - o->dt * o->k * o->u) / (o->m + o->dt * o->c + o->dt * o->dt * o->k);
-	o->u += o->dt * o->v;
+    o->v = (o->m * o->v - o->dt * o->k * o->u) / (o->m + o->dt * o->c + o->dt * o->dt * o->k);
+    o->u += o->dt * o->v;
 }
 
 // u' = u + dt·v + dt²·a/2, a' = a(u', v + dt·a), v' = v + dt·(a + a')/2; a' serves the next substep too.
 static void velocity_verlet(Oscillator *o) {
-	double a = o->a;
-	o->u += o->dt * o->v + 0.5 * o->dt * o->dt * a;
-	o->a = -(o->k * o->u + o->c * (o->v + o->dt * a)) / o->m;
-	o->v += 0.5 * o->dt * (a + o->a);
+    double a = o->a;
+    o->u += o->dt * o->v + 0.5 * o->dt * o->dt * a;
+    o->a = -(o->k * o->u + o->c * (o->v + o->dt * a)) / o->m;
+    o->v += 0.5 * o->dt * (a + o->a);
 }
 
 // Bullet's link answers an error x − L with f(x) = x·(x² − L²)/(x² + L²), and the bridge divides it by
 // h(l) = l·(l + L)/(l² + L²) of the length before the step, so that f/h is Hooke's l − L where both lengths agree.
 static double bullet_error(double x, double l, double rest) {
-	double f = x * (x * x - rest * rest) / (x * x + rest * rest), h = l * (l + rest) / (l * l + rest * rest);
-	return f / h;
+    double f = x * (x * x - rest * rest) / (x * x + rest * rest), h = l * (l + rest) / (l * l + rest * rest);
+    return f / h;
 }
 
 // The share of the error that one of the bridge's sweeps takes off.
 static double bullet_share(double q, uint32_t iterations) {
-	if (isinf(q)) return 1;
-	return iterations == 1 ? fmin(1, q / (1 + q / 2)) : 1 - pow(1 + q, -1.0 / iterations);
+    if (isinf(q)) return 1;
+    return iterations == 1 ? fmin(1, q / (1 + q / 2)) : 1 - pow(1 + q, -1.0 / iterations);
 }
 
 // Damping explicit, then each sweep takes its share off what is left.
 static void bullet_link(Oscillator *o) {
-	double share = bullet_share(o->k * o->dt * o->dt / o->m, o->iterations);
-	double moved = o->u + o->dt * o->v * (1 - o->dt * o->c / o->m);
-	for (uint32_t i = 0; i < o->iterations; i++) moved -= share * bullet_error(o->rest + moved, o->rest + o->u, o->rest);
-	o->v = (moved - o->u) / o->dt;
-	o->u = moved;
+    double share = bullet_share(o->k * o->dt * o->dt / o->m, o->iterations);
+    double moved = o->u + o->dt * o->v * (1 - o->dt * o->c / o->m);
+    for (uint32_t i = 0; i < o->iterations; i++)
+        moved -= share * bullet_error(o->rest + moved, o->rest + o->u, o->rest);
+    o->v = (moved - o->u) / o->dt;
+    o->u = moved;
 }
 
-static bool oscillate(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity, void (*substep)(Oscillator *)) {
-	const ck_Spring *spring = &model->springs[0];
-	double along[3], dt = time_step(model, used);
-	ck_subtract(along, model->position + 3, model->position);
-	for (int axis = 0; axis < 3; axis++) along[axis] /= spring->rest;
-	Oscillator o = {spring->stiffness, spring->damping, model->mass[1], spring->rest, dt, used->iterations, .v = ck_dot(model->velocity + 3, along)};
-	o.a = -o.c * o.v / o.m;
-	for (long step = lround(time / dt); step > 0; step--) substep(&o);
-	memcpy(position, model->position, 6 * sizeof(double));
-	memset(velocity, 0, 6 * sizeof(double));
-	ck_add_scaled(position + 3, o.u, along);
-	ck_add_scaled(velocity + 3, o.v, along);
-	return true;
+static bool oscillate(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity,
+                      void (*substep)(Oscillator *)) {
+    const ck_Spring *spring = &model->springs[0];
+    double along[3], dt = time_step(model, used);
+    ck_subtract(along, model->position + 3, model->position);
+    for (int axis = 0; axis < 3; axis++) along[axis] /= spring->rest;
+    Oscillator o = {spring->stiffness,
+                    spring->damping,
+                    model->mass[1],
+                    spring->rest,
+                    dt,
+                    used->iterations,
+                    .v = ck_dot(model->velocity + 3, along)};
+    o.a = -o.c * o.v / o.m;
+    for (long step = lround(time / dt); step > 0; step--) substep(&o);
+    memcpy(position, model->position, 6 * sizeof(double));
+    memset(velocity, 0, 6 * sizeof(double));
+    ck_add_scaled(position + 3, o.u, along);
+    ck_add_scaled(velocity + 3, o.v, along);
+    return true;
 }
 
-static bool oscillate_verlet(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	return oscillate(model, used, time, position, velocity, velocity_verlet);
+static bool oscillate_verlet(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                             double *velocity) {
+    return oscillate(model, used, time, position, velocity, velocity_verlet);
 }
 
-// One spring along one line: XPBD's only constraint, Bullet's Newton step and ODE's joint all solve backward Euler exactly.
-static bool oscillate_backward(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	return oscillate(model, used, time, position, velocity, backward_euler);
+// One spring along one line: XPBD's only constraint, Bullet's Newton step and ODE's joint all solve backward Euler
+// exactly.
+static bool oscillate_backward(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                               double *velocity) {
+    return oscillate(model, used, time, position, velocity, backward_euler);
 }
 
-static bool oscillate_bullet_link(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	return oscillate(model, used, time, position, velocity, bullet_link);
+static bool oscillate_bullet_link(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                                  double *velocity) {
+    return oscillate(model, used, time, position, velocity, bullet_link);
 }
 
 // One link of a chain that rests under Gauss–Seidel sweeps from the pin down, one sweep a substep.
 typedef struct Link {
-	const ck_Spring *spring;
-	double weight;     // w_a + w_b, 1/kg
-	double multiplier; // λ = dt²·T: what the sweep has to correct by, kg·m
-	double ahead;      // by how much the link is longer than at rest when its turn comes, m: its upper end has just been
-					   // pulled up by w·λ of the link above, or is the pin, from which all else has fallen by g·dt²
-	double dt;
+    const ck_Spring *spring;
+    double weight;     // w_a + w_b, 1/kg
+    double multiplier; // λ = dt²·T: what the sweep has to correct by, kg·m
+    double ahead; // by how much the link is longer than at rest when its turn comes, m: its upper end has just been
+                  // pulled up by w·λ of the link above, or is the pin, from which all else has fallen by g·dt²
+    double dt;
 } Link;
 
 // A bar takes off all of its error: λ·W = s + ahead.
 static double bar_stretch(const Link *link) {
-	return link->multiplier * link->weight - link->ahead;
+    return link->multiplier * link->weight - link->ahead;
 }
 
 // λ·((1 + γ)·W + α) = s + (1 + γ)·ahead: damping sees the link on its way back and softens it by (1 + γ).
 static double xpbd_stretch(const Link *link) {
-	double stiffness = link->spring->stiffness, gamma = link->spring->damping / (stiffness * link->dt);
-	double compliance = 1 / (stiffness * link->dt * link->dt);
-	return link->multiplier * ((1 + gamma) * link->weight + compliance) - (1 + gamma) * link->ahead;
+    double stiffness = link->spring->stiffness, gamma = link->spring->damping / (stiffness * link->dt);
+    double compliance = 1 / (stiffness * link->dt * link->dt);
+    return link->multiplier * ((1 + gamma) * link->weight + compliance) - (1 + gamma) * link->ahead;
 }
 
 // λ·W/κ = f(l + ahead)/h(l), solved for l by fixed point: f is nearly linear, each round gains a digit or more.
 static double bullet_stretch(const Link *link) {
-	double rest = link->spring->rest, share = bullet_share(link->spring->stiffness * link->dt * link->dt * link->weight, 1);
-	double wanted = link->multiplier * link->weight / share, stretch = wanted - link->ahead;
-	for (int round = 0; round < 50; round++) stretch += wanted - bullet_error(rest + stretch + link->ahead, rest + stretch, rest);
-	return stretch;
+    double rest = link->spring->rest,
+           share = bullet_share(link->spring->stiffness * link->dt * link->dt * link->weight, 1);
+    double wanted = link->multiplier * link->weight / share, stretch = wanted - link->ahead;
+    for (int round = 0; round < 50; round++)
+        stretch += wanted - bullet_error(rest + stretch + link->ahead, rest + stretch, rest);
+    return stretch;
 }
 
 // With n > 1 sweeps each adds a share, and 1/k_eff = 1/k + w·dt²/n, good to about 1/N.
 static double swept_stretch(const Link *link, uint32_t iterations) {
-	return link->multiplier * (1 / (link->spring->stiffness * link->dt * link->dt) + 0.5 * link->weight / iterations);
+    return link->multiplier * (1 / (link->spring->stiffness * link->dt * link->dt) + 0.5 * link->weight / iterations);
 }
 
 // The whole chain at rest. eased: what the method's drag takes off the field's push even at rest.
-static bool hang(const ck_Model *model, const ck_Settings *used, double eased, double *position, double *velocity, double (*stretch)(const Link *)) {
-	double dt = time_step(model, used), push = dt * dt * eased, below = 0, above = 0, down[3], g = ck_length(model->gravity);
-	if (model->terms & CK_TERM_FORCE) return false;
-	for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;
-	for (int i = 1; i < model->particle_count; i++) below += model->mass[i] * g;
-	memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
-	memcpy(position, model->position, 3 * sizeof(double));
-	for (int i = 1; i < model->particle_count; i++) {
-		double upper = ck_model_inverse_mass(model, i - 1);
-		Link link = {&model->springs[i - 1], upper + ck_model_inverse_mass(model, i), push * below, push * (upper > 0 ? upper * above : g), dt};
-		memcpy(position + 3 * i, position + 3 * i - 3, 3 * sizeof(double));
-		ck_add_scaled(position + 3 * i, link.spring->rest + (used->iterations == 1 ? stretch(&link) : swept_stretch(&link, used->iterations)), down);
-		above = below;
-		below -= model->mass[i] * g;
-	}
-	return true;
+static bool hang(const ck_Model *model, const ck_Settings *used, double eased, double *position, double *velocity,
+                 double (*stretch)(const Link *)) {
+    double dt = time_step(model, used), push = dt * dt * eased, below = 0, above = 0, down[3],
+           g = ck_length(model->gravity);
+    if (model->terms & CK_TERM_FORCE) return false;
+    for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;
+    for (int i = 1; i < model->particle_count; i++) below += model->mass[i] * g;
+    memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+    memcpy(position, model->position, 3 * sizeof(double));
+    for (int i = 1; i < model->particle_count; i++) {
+        double upper = ck_model_inverse_mass(model, i - 1);
+        Link link = {&model->springs[i - 1], upper + ck_model_inverse_mass(model, i), push * below,
+                     push * (upper > 0 ? upper * above : g), dt};
+        memcpy(position + 3 * i, position + 3 * i - 3, 3 * sizeof(double));
+        ck_add_scaled(position + 3 * i,
+                      link.spring->rest +
+                          (used->iterations == 1 ? stretch(&link) : swept_stretch(&link, used->iterations)),
+                      down);
+        above = below;
+        below -= model->mass[i] * g;
+    }
+    return true;
 }
 
 static bool hang_bars(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	(void)time;
-	double eased = 1 / (1 + 0.5 * model->drag * time_step(model, used));
-	return (used->iterations == 1 || (model->terms & CK_TERM_RIGID)) && hang(model, used, eased, position, velocity, bar_stretch);
+    (void)time;
+    double eased = 1 / (1 + 0.5 * model->drag * time_step(model, used));
+    return (used->iterations == 1 || (model->terms & CK_TERM_RIGID)) &&
+           hang(model, used, eased, position, velocity, bar_stretch);
 }
 
 static bool hang_xpbd(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	(void)time;
-	return hang(model, used, 1, position, velocity, xpbd_stretch);
+    (void)time;
+    return hang(model, used, 1, position, velocity, xpbd_stretch);
 }
 
-static bool hang_bullet(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	(void)time;
-	return used->iterations == 1 && hang(model, used, 1, position, velocity, bullet_stretch);
+static bool hang_bullet(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                        double *velocity) {
+    (void)time;
+    return used->iterations == 1 && hang(model, used, 1, position, velocity, bullet_stretch);
 }
 
 // Solves for the velocity at the end of the step, or steps by forces: at rest the stretch is exact.
-static bool hang_exactly(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
-	(void)used;
-	return ck_truth_form_find("vertical_chain")->at(model, time, position, velocity, NULL) == CK_OK;
+static bool hang_exactly(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                         double *velocity) {
+    (void)used;
+    return ck_truth_form_find("vertical_chain")->at(model, time, position, velocity, NULL) == CK_OK;
 }
 
 static const Theory theories[] = {
-	{CK_METHOD_VELOCITY_VERLET, "free_fall", fall_exactly},
-	{CK_METHOD_STOERMER_BARS, "free_fall", fall_exactly},
-	{CK_METHOD_XPBD, "free_fall", fall_ahead},
-	{CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
-	{CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
-	{CK_METHOD_SEMI_IMPLICIT_ODE, "free_fall", fall_ahead},
-	{CK_METHOD_VELOCITY_VERLET, "terminal_speed", drag_verlet},
-	{CK_METHOD_STOERMER_BARS, "terminal_speed", drag_leapfrog},
-	{CK_METHOD_XPBD, "terminal_speed", drag_then_damp},
-	{CK_METHOD_BULLET_PBD, "terminal_speed", drag_then_damp},
-	{CK_METHOD_IMPLICIT_EULER, "terminal_speed", drag_damp_first},
-	{CK_METHOD_SEMI_IMPLICIT_ODE, "terminal_speed", drag_then_scale},
-	{CK_METHOD_VELOCITY_VERLET, "oscillator", oscillate_verlet},
-	{CK_METHOD_XPBD, "oscillator", oscillate_backward},
-	{CK_METHOD_BULLET_PBD, "oscillator", oscillate_bullet_link},
-	{CK_METHOD_IMPLICIT_EULER, "oscillator", oscillate_backward},
-	{CK_METHOD_SEMI_IMPLICIT_ODE, "oscillator", oscillate_backward},
-	{CK_METHOD_VELOCITY_VERLET, "vertical_chain", hang_exactly},
-	{CK_METHOD_STOERMER_BARS, "vertical_chain", hang_bars},
-	{CK_METHOD_XPBD, "vertical_chain", hang_xpbd},
-	{CK_METHOD_BULLET_PBD, "vertical_chain", hang_bullet},
-	{CK_METHOD_IMPLICIT_EULER, "vertical_chain", hang_exactly},
-	{CK_METHOD_SEMI_IMPLICIT_ODE, "vertical_chain", hang_exactly},
+    {CK_METHOD_VELOCITY_VERLET, "free_fall", fall_exactly},
+    {CK_METHOD_STOERMER_BARS, "free_fall", fall_exactly},
+    {CK_METHOD_XPBD, "free_fall", fall_ahead},
+    {CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
+    {CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
+    {CK_METHOD_SEMI_IMPLICIT_ODE, "free_fall", fall_ahead},
+    {CK_METHOD_VELOCITY_VERLET, "terminal_speed", drag_verlet},
+    {CK_METHOD_STOERMER_BARS, "terminal_speed", drag_leapfrog},
+    {CK_METHOD_XPBD, "terminal_speed", drag_then_damp},
+    {CK_METHOD_BULLET_PBD, "terminal_speed", drag_then_damp},
+    {CK_METHOD_IMPLICIT_EULER, "terminal_speed", drag_damp_first},
+    {CK_METHOD_SEMI_IMPLICIT_ODE, "terminal_speed", drag_then_scale},
+    {CK_METHOD_VELOCITY_VERLET, "oscillator", oscillate_verlet},
+    {CK_METHOD_XPBD, "oscillator", oscillate_backward},
+    {CK_METHOD_BULLET_PBD, "oscillator", oscillate_bullet_link},
+    {CK_METHOD_IMPLICIT_EULER, "oscillator", oscillate_backward},
+    {CK_METHOD_SEMI_IMPLICIT_ODE, "oscillator", oscillate_backward},
+    {CK_METHOD_VELOCITY_VERLET, "vertical_chain", hang_exactly},
+    {CK_METHOD_STOERMER_BARS, "vertical_chain", hang_bars},
+    {CK_METHOD_XPBD, "vertical_chain", hang_xpbd},
+    {CK_METHOD_BULLET_PBD, "vertical_chain", hang_bullet},
+    {CK_METHOD_IMPLICIT_EULER, "vertical_chain", hang_exactly},
+    {CK_METHOD_SEMI_IMPLICIT_ODE, "vertical_chain", hang_exactly},
 };
 
 // At rest on a network: those that solve a step's forces are exact, the sweeping ones soften.
-static bool rest_on_network(const ck_Model *model, ck_Method method, const ck_Settings *used, const ck_Truth *truth, double *position) {
-	const double *at_rest = ck_trajectory_position(&truth->reference.trajectory, 0);
-	bool exact = method == CK_METHOD_VELOCITY_VERLET || method == CK_METHOD_IMPLICIT_EULER || method == CK_METHOD_SEMI_IMPLICIT_ODE;
-	if (!exact) return ck_prediction_rest(model, method, used, at_rest, position);
-	memcpy(position, at_rest, 3 * sizeof(double) * (size_t)model->particle_count);
-	return true;
+static bool rest_on_network(const ck_Model *model, ck_Method method, const ck_Settings *used, const ck_Truth *truth,
+                            double *position) {
+    const double *at_rest = ck_trajectory_position(&truth->reference.trajectory, 0);
+    bool exact = method == CK_METHOD_VELOCITY_VERLET || method == CK_METHOD_IMPLICIT_EULER ||
+                 method == CK_METHOD_SEMI_IMPLICIT_ODE;
+    if (!exact) return ck_prediction_rest(model, method, used, at_rest, position);
+    memcpy(position, at_rest, 3 * sizeof(double) * (size_t)model->particle_count);
+    return true;
 }
 
 static const Theory *find_theory(ck_Method method, const ck_Truth *truth) {
-	for (size_t i = 0; truth->form && i < sizeof theories / sizeof *theories; i++)
-		if (theories[i].method == method && !strcmp(theories[i].truth, truth->form->name)) return &theories[i];
-	return NULL;
+    for (size_t i = 0; truth->form && i < sizeof theories / sizeof *theories; i++)
+        if (theories[i].method == method && !strcmp(theories[i].truth, truth->form->name)) return &theories[i];
+    return NULL;
 }
 
-ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine, const ck_Settings *used,
-							   const ck_Truth *truth, ck_Error *error) {
-	*prediction = (ck_Reference){.is_static = truth->reference.is_static, .horizon = model->frame_count};
-	const Theory *theory = find_theory(engine->method, truth);
-	bool network = !theory && truth->path_count && truth->form->is_static;
-	if (!theory && !network) return CK_OK;
-	ck_Trajectory *path = &prediction->trajectory;
-	ck_Status status = ck_trajectory_create(path, model, error);
-	if (!status && network) path->frame_count = rest_on_network(model, engine->method, used, truth, path->data);
-	if (network) return status;
-	int frames = prediction->is_static ? 1 : model->frame_count + 1;
-	for (int frame = 0; frame < frames && !status; frame++) {
-		if (!theory->at(model, used, frame * model->step, ck_trajectory_position(path, frame), ck_trajectory_velocity(path, frame))) {
-			path->frame_count = 0;
-			break;
-		}
-		path->frame_count = frame + 1;
-	}
-	return status;
+ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine,
+                               const ck_Settings *used, const ck_Truth *truth, ck_Error *error) {
+    *prediction = (ck_Reference){.is_static = truth->reference.is_static, .horizon = model->frame_count};
+    const Theory *theory = find_theory(engine->method, truth);
+    bool network = !theory && truth->path_count && truth->form->is_static;
+    if (!theory && !network) return CK_OK;
+    ck_Trajectory *path = &prediction->trajectory;
+    ck_Status status = ck_trajectory_create(path, model, error);
+    if (!status && network) path->frame_count = rest_on_network(model, engine->method, used, truth, path->data);
+    if (network) return status;
+    int frames = prediction->is_static ? 1 : model->frame_count + 1;
+    for (int frame = 0; frame < frames && !status; frame++) {
+        if (!theory->at(model, used, frame * model->step, ck_trajectory_position(path, frame),
+                        ck_trajectory_velocity(path, frame))) {
+            path->frame_count = 0;
+            break;
+        }
+        path->frame_count = frame + 1;
+    }
+    return status;
 }

@@ -11,7 +11,7 @@
 // prediction stays empty (frame_count 0), which is not an error.
 //   used  the settings that the engine ran with
 // Errors: CK_NO_MEMORY. Free with ck_trajectory_free in any case.
-ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine, const ck_Settings *used,
-							   const ck_Truth *truth, ck_Error *error);
+ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine,
+                               const ck_Settings *used, const ck_Truth *truth, ck_Error *error);
 
 #endif

@@ -9,6 +9,7 @@
 //   truth     [3*n] in, m: the equilibrium
 //   position  [3*n] out, m
 // False where theory does not reach: other methods, more than one sweep, or a rest that Newton does not find.
-bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settings *used, const double *truth, double *position);
+bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settings *used, const double *truth,
+                        double *position);
 
 #endif

@@ -9,20 +9,22 @@
 // Acceleration of every particle, m/s², 0 where pinned: springs with axial damping, field, drag.
 //   position, velocity  [3*n] in;  acceleration  [3*n] out
 // Cost: one pass over springs, one over particles.
-void ck_reference_accelerate(const ck_Model *model, const double *position, const double *velocity, double *acceleration);
+void ck_reference_accelerate(const ck_Model *model, const double *position, const double *velocity,
+                             double *acceleration);
 
 // The path from the model's start by the classical fourth-order Runge–Kutta method, substeps to a frame.
 //   nudge  m, added to the start of every free coordinate with a sign of its own; 0: none
 // Writes all frames; stops early, with fewer frames, where numbers leave the finite.
 // Errors: CK_NO_MEMORY. Free trajectory in any case. Source: Kutta 1901.
-ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge, ck_Error *error);
+ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
+                                 ck_Error *error);
 
 // A path that halving its step no longer moves, and how far it can be trusted.
 typedef struct ck_ReferencePath {
-	ck_Trajectory fine, coarse; // at the step that was accepted, and at twice that
-	int substeps;               // of fine
-	int horizon;                // the last frame before a 1e-9 nudge of the start has grown by 1e4
-	double agreement;           // largest distance of fine and coarse up to the horizon, / size
+    ck_Trajectory fine, coarse; // at the step that was accepted, and at twice that
+    int substeps;               // of fine
+    int horizon;                // the last frame before a 1e-9 nudge of the start has grown by 1e4
+    double agreement;           // largest distance of fine and coarse up to the horizon, / size
 } ck_ReferencePath;
 
 // Halves the step until two paths agree to 1e-9 of the size up to the horizon.

@@ -7,190 +7,193 @@
 #include <time.h>
 
 const char *const ck_run_status_names[CK_RUN_STATUS_COUNT] = {
-	"ok", "unsettled", "overstretched", "energy_gain", "diverged", "aborted", "timed_out", "out_of_memory", "unsupported", "refused",
+    "ok",      "unsettled", "overstretched", "energy_gain", "diverged",
+    "aborted", "timed_out", "out_of_memory", "unsupported", "refused",
 };
 
 // What a child tells its parent, in shared memory.
 typedef struct Report {
-	ck_Status status;
-	ck_Error error;
-	ck_StepResult step;
-	ck_Settings used;
-	ck_Ledger ledger;
-	int frame_count; // complete frames, the start among them
-	double cpu, worst_step;
+    ck_Status status;
+    ck_Error error;
+    ck_StepResult step;
+    ck_Settings used;
+    ck_Ledger ledger;
+    int frame_count; // complete frames, the start among them
+    double cpu, worst_step;
 } Report;
 
 typedef struct Job {
-	const ck_Run *run;
-	Report *report;
-	int frames; // to step
+    const ck_Run *run;
+    Report *report;
+    int frames; // to step
 } Job;
 
 static double thread_cpu(void) {
-	struct timespec time;
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+    struct timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 static void *create(const Job *job) {
-	void *state = NULL;
-	Report *report = job->report;
-	report->ledger.count = 0;
-	report->status = job->run->engine->create(&state, job->run->model, &job->run->wanted, &report->used, &report->ledger, &report->error);
-	return state;
+    void *state = NULL;
+    Report *report = job->report;
+    report->ledger.count = 0;
+    report->status = job->run->engine->create(&state, job->run->model, &job->run->wanted, &report->used,
+                                              &report->ledger, &report->error);
+    return state;
 }
 
 static void measure(void *context) {
-	const Job *job = context;
-	const ck_Engine *engine = job->run->engine;
-	const ck_Trajectory *trajectory = &job->run->trajectory;
-	Report *report = job->report;
-	void *state = create(job);
-	if (report->status) return;
-	engine->read(state, ck_trajectory_position(trajectory, 0), ck_trajectory_velocity(trajectory, 0));
-	report->frame_count = 1;
-	while (report->frame_count <= job->frames) {
-		double start = thread_cpu();
-		report->step = engine->step(state);
-		report->cpu += thread_cpu() - start;
-		if (report->step) break;
-		engine->read(state, ck_trajectory_position(trajectory, report->frame_count), ck_trajectory_velocity(trajectory, report->frame_count));
-		report->frame_count++;
-	}
-	engine->destroy(state);
+    const Job *job = context;
+    const ck_Engine *engine = job->run->engine;
+    const ck_Trajectory *trajectory = &job->run->trajectory;
+    Report *report = job->report;
+    void *state = create(job);
+    if (report->status) return;
+    engine->read(state, ck_trajectory_position(trajectory, 0), ck_trajectory_velocity(trajectory, 0));
+    report->frame_count = 1;
+    while (report->frame_count <= job->frames) {
+        double start = thread_cpu();
+        report->step = engine->step(state);
+        report->cpu += thread_cpu() - start;
+        if (report->step) break;
+        engine->read(state, ck_trajectory_position(trajectory, report->frame_count),
+                     ck_trajectory_velocity(trajectory, report->frame_count));
+        report->frame_count++;
+    }
+    engine->destroy(state);
 }
 
 static void time_frames(void *context) {
-	const Job *job = context;
-	const ck_Engine *engine = job->run->engine;
-	Report *report = job->report;
-	// warm up on a world of its own: code and allocator, not this world's state
-	void *state = create(job);
-	if (report->status) return;
-	for (int i = 0; i < job->frames && i < 3; i++) engine->step(state);
-	engine->destroy(state);
-	state = create(job);
-	if (report->status) return;
-	for (int i = 0; i < job->frames; i++) {
-		double start = thread_cpu();
-		report->step = engine->step(state);
-		double cpu = thread_cpu() - start;
-		report->cpu += cpu;
-		report->worst_step = fmax(report->worst_step, cpu);
-		if (report->step) break;
-	}
-	engine->destroy(state);
+    const Job *job = context;
+    const ck_Engine *engine = job->run->engine;
+    Report *report = job->report;
+    // warm up on a world of its own: code and allocator, not this world's state
+    void *state = create(job);
+    if (report->status) return;
+    for (int i = 0; i < job->frames && i < 3; i++) engine->step(state);
+    engine->destroy(state);
+    state = create(job);
+    if (report->status) return;
+    for (int i = 0; i < job->frames; i++) {
+        double start = thread_cpu();
+        report->step = engine->step(state);
+        double cpu = thread_cpu() - start;
+        report->cpu += cpu;
+        report->worst_step = fmax(report->worst_step, cpu);
+        if (report->step) break;
+    }
+    engine->destroy(state);
 }
 
 static const ck_RunStatus status_of_child[] = {
-	[CK_CHILD_DONE] = CK_RUN_OK,
-	[CK_CHILD_ABORTED] = CK_RUN_ABORTED,
-	[CK_CHILD_TIMED_OUT] = CK_RUN_TIMED_OUT,
-	[CK_CHILD_NO_MEMORY] = CK_RUN_OUT_OF_MEMORY,
+    [CK_CHILD_DONE] = CK_RUN_OK,
+    [CK_CHILD_ABORTED] = CK_RUN_ABORTED,
+    [CK_CHILD_TIMED_OUT] = CK_RUN_TIMED_OUT,
+    [CK_CHILD_NO_MEMORY] = CK_RUN_OUT_OF_MEMORY,
 };
 
 // Turns how the child ended and what it reported into the run's status and reason.
 static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *child) {
-	run->used = report->used;
-	run->ledger = report->ledger;
-	run->trajectory.frame_count = report->frame_count;
-	run->measured_cpu = report->cpu;
-	run->peak_rss_bytes = child->peak_rss_bytes;
-	run->status = status_of_child[child->end];
-	double time = fmax(0, report->frame_count - 1) * run->model->step;
-	if (child->end != CK_CHILD_DONE) {
-		snprintf(run->reason, sizeof run->reason, "%s, at t = %g s", child->reason, time);
-	} else if (report->status) {
-		run->status = report->status == CK_NO_MEMORY ? CK_RUN_OUT_OF_MEMORY : CK_RUN_REFUSED;
-		snprintf(run->reason, sizeof run->reason, "%s", report->error.message);
-	} else if (report->step == CK_STEP_NO_MEMORY) {
-		run->status = CK_RUN_OUT_OF_MEMORY;
-		snprintf(run->reason, sizeof run->reason, "the engine ran out of memory after t = %g s", time);
-	} else if (report->step == CK_STEP_DIVERGED) {
-		run->status = CK_RUN_DIVERGED;
-		snprintf(run->reason, sizeof run->reason, "left the finite numbers after t = %g s", time);
-	} else {
-		snprintf(run->reason, sizeof run->reason, "ran to t = %g s", time);
-	}
+    run->used = report->used;
+    run->ledger = report->ledger;
+    run->trajectory.frame_count = report->frame_count;
+    run->measured_cpu = report->cpu;
+    run->peak_rss_bytes = child->peak_rss_bytes;
+    run->status = status_of_child[child->end];
+    double time = fmax(0, report->frame_count - 1) * run->model->step;
+    if (child->end != CK_CHILD_DONE) {
+        snprintf(run->reason, sizeof run->reason, "%s, at t = %g s", child->reason, time);
+    } else if (report->status) {
+        run->status = report->status == CK_NO_MEMORY ? CK_RUN_OUT_OF_MEMORY : CK_RUN_REFUSED;
+        snprintf(run->reason, sizeof run->reason, "%s", report->error.message);
+    } else if (report->step == CK_STEP_NO_MEMORY) {
+        run->status = CK_RUN_OUT_OF_MEMORY;
+        snprintf(run->reason, sizeof run->reason, "the engine ran out of memory after t = %g s", time);
+    } else if (report->step == CK_STEP_DIVERGED) {
+        run->status = CK_RUN_DIVERGED;
+        snprintf(run->reason, sizeof run->reason, "left the finite numbers after t = %g s", time);
+    } else {
+        snprintf(run->reason, sizeof run->reason, "ran to t = %g s", time);
+    }
 }
 
 // True, with status and reason set, where the scene has a term that the engine lacks.
 static bool is_unsupported(ck_Run *run) {
-	unsigned missing = run->model->terms & ~run->engine->terms;
-	if (!missing) return false;
-	run->status = CK_RUN_UNSUPPORTED;
-	size_t used = (size_t)snprintf(run->reason, sizeof run->reason, "%s does not model", run->engine->name);
-	const char *separator = " ";
-	for (int bit = 0; bit < CK_TERM_COUNT; bit++) {
-		if (!(missing & (1u << bit))) continue;
-		used += (size_t)snprintf(run->reason + used, sizeof run->reason - used, "%s%s", separator, ck_term_names[bit]);
-		separator = ", ";
-	}
-	return true;
+    unsigned missing = run->model->terms & ~run->engine->terms;
+    if (!missing) return false;
+    run->status = CK_RUN_UNSUPPORTED;
+    size_t used = (size_t)snprintf(run->reason, sizeof run->reason, "%s does not model", run->engine->name);
+    const char *separator = " ";
+    for (int bit = 0; bit < CK_TERM_COUNT; bit++) {
+        if (!(missing & (1u << bit))) continue;
+        used += (size_t)snprintf(run->reason + used, sizeof run->reason - used, "%s%s", separator, ck_term_names[bit]);
+        separator = ", ";
+    }
+    return true;
 }
 
-ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted, const ck_Limits *limits,
-						 ck_Error *error) {
-	*run = (ck_Run){.model = model, .engine = engine, .wanted = *wanted};
-	if (is_unsupported(run)) return CK_OK;
-	ck_Status status = ck_trajectory_create(&run->trajectory, model, error);
-	if (status) return status;
-	Report *report = ck_shared_allocate(sizeof *report);
-	if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	ck_ChildResult child;
-	status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count}, limits, error);
-	if (!status) conclude(run, report, &child);
-	ck_shared_free(report, sizeof *report);
-	return status;
+ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted,
+                         const ck_Limits *limits, ck_Error *error) {
+    *run = (ck_Run){.model = model, .engine = engine, .wanted = *wanted};
+    if (is_unsupported(run)) return CK_OK;
+    ck_Status status = ck_trajectory_create(&run->trajectory, model, error);
+    if (status) return status;
+    Report *report = ck_shared_allocate(sizeof *report);
+    if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_ChildResult child;
+    status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count}, limits, error);
+    if (!status) conclude(run, report, &child);
+    ck_shared_free(report, sizeof *report);
+    return status;
 }
 
 ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error) {
-	ck_Timing *timing = &run->timing;
-	if (run->trajectory.frame_count <= run->model->frame_count || timing->repeat_count == CK_MAX_REPEATS) return CK_OK;
-	if (!timing->frames) {
-		double fits = run->measured_cpu > 0 ? budget / run->measured_cpu : 1;
-		timing->frames = (int)fmax(1, floor(fmin(1, fits) * run->model->frame_count));
-	}
-	Report *report = ck_shared_allocate(sizeof *report);
-	if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-	ck_ChildResult child;
-	ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames}, limits, error);
-	if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
-		timing->cpu[timing->repeat_count++] = report->cpu;
-		timing->worst_step = fmax(timing->worst_step, report->worst_step);
-	}
-	ck_shared_free(report, sizeof *report);
-	return status;
+    ck_Timing *timing = &run->timing;
+    if (run->trajectory.frame_count <= run->model->frame_count || timing->repeat_count == CK_MAX_REPEATS) return CK_OK;
+    if (!timing->frames) {
+        double fits = run->measured_cpu > 0 ? budget / run->measured_cpu : 1;
+        timing->frames = (int)fmax(1, floor(fmin(1, fits) * run->model->frame_count));
+    }
+    Report *report = ck_shared_allocate(sizeof *report);
+    if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_ChildResult child;
+    ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames}, limits, error);
+    if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
+        timing->cpu[timing->repeat_count++] = report->cpu;
+        timing->worst_step = fmax(timing->worst_step, report->worst_step);
+    }
+    ck_shared_free(report, sizeof *report);
+    return status;
 }
 
 void ck_run_free(ck_Run *run) {
-	ck_trajectory_free(&run->trajectory);
-	*run = (ck_Run){0};
+    ck_trajectory_free(&run->trajectory);
+    *run = (ck_Run){0};
 }
 
 static int compare_numbers(const void *a, const void *b) {
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
 }
 
 // Linear interpolation between order statistics, as R's default does. Source: Hyndman and Fan 1996, type 7.
 static double quantile(const ck_Timing *timing, double share) {
-	double sorted[CK_MAX_REPEATS];
-	int count = timing->repeat_count;
-	if (!count) return NAN;
-	memcpy(sorted, timing->cpu, sizeof *sorted * (size_t)count);
-	qsort(sorted, (size_t)count, sizeof *sorted, compare_numbers);
-	double at = share * (count - 1);
-	int below = (int)at;
-	int above = below + 1 < count ? below + 1 : below;
-	return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
+    double sorted[CK_MAX_REPEATS];
+    int count = timing->repeat_count;
+    if (!count) return NAN;
+    memcpy(sorted, timing->cpu, sizeof *sorted * (size_t)count);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_numbers);
+    double at = share * (count - 1);
+    int below = (int)at;
+    int above = below + 1 < count ? below + 1 : below;
+    return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
 }
 
 double ck_timing_median(const ck_Timing *timing) {
-	return quantile(timing, 0.5);
+    return quantile(timing, 0.5);
 }
 
 double ck_timing_iqr(const ck_Timing *timing) {
-	return quantile(timing, 0.75) - quantile(timing, 0.25);
+    return quantile(timing, 0.75) - quantile(timing, 0.25);
 }

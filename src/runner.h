@@ -8,17 +8,17 @@
 
 // What a run can end in.
 typedef enum ck_RunStatus {
-	CK_RUN_OK,
-	CK_RUN_UNSETTLED,     // still moves at the end of a scene whose truth is at rest
-	CK_RUN_OVERSTRETCHED, // a spring is more than twice its length
-	CK_RUN_ENERGY_GAIN,   // gained more than a tenth of the energy there was
-	CK_RUN_DIVERGED,      // left the finite numbers
-	CK_RUN_ABORTED,
-	CK_RUN_TIMED_OUT,
-	CK_RUN_OUT_OF_MEMORY,
-	CK_RUN_UNSUPPORTED, // the scene needs a term that the engine lacks
-	CK_RUN_REFUSED,
-	CK_RUN_STATUS_COUNT,
+    CK_RUN_OK,
+    CK_RUN_UNSETTLED,     // still moves at the end of a scene whose truth is at rest
+    CK_RUN_OVERSTRETCHED, // a spring is more than twice its length
+    CK_RUN_ENERGY_GAIN,   // gained more than a tenth of the energy there was
+    CK_RUN_DIVERGED,      // left the finite numbers
+    CK_RUN_ABORTED,
+    CK_RUN_TIMED_OUT,
+    CK_RUN_OUT_OF_MEMORY,
+    CK_RUN_UNSUPPORTED, // the scene needs a term that the engine lacks
+    CK_RUN_REFUSED,
+    CK_RUN_STATUS_COUNT,
 } ck_RunStatus;
 extern const char *const ck_run_status_names[CK_RUN_STATUS_COUNT];
 
@@ -26,29 +26,29 @@ extern const char *const ck_run_status_names[CK_RUN_STATUS_COUNT];
 #define CK_MAX_REPEATS 99
 
 typedef struct ck_Timing {
-	int frames;                 // timed per repeat
-	double cpu[CK_MAX_REPEATS]; // s of the stepping thread, for those frames
-	int repeat_count;
-	double worst_step; // s of the slowest frame of any repeat
+    int frames;                 // timed per repeat
+    double cpu[CK_MAX_REPEATS]; // s of the stepping thread, for those frames
+    int repeat_count;
+    double worst_step; // s of the slowest frame of any repeat
 } ck_Timing;
 
 typedef struct ck_Run {
-	const ck_Model *model;
-	const ck_Engine *engine;
-	ck_Settings wanted, used;
-	ck_RunStatus status;
-	char reason[600]; // never empty: also an ok run says why it is
-	ck_Ledger ledger;
-	ck_Trajectory trajectory;
-	double measured_cpu; // s of the measured pass
-	ck_Timing timing;
-	size_t peak_rss_bytes;
+    const ck_Model *model;
+    const ck_Engine *engine;
+    ck_Settings wanted, used;
+    ck_RunStatus status;
+    char reason[600]; // never empty: also an ok run says why it is
+    ck_Ledger ledger;
+    ck_Trajectory trajectory;
+    double measured_cpu; // s of the measured pass
+    ck_Timing timing;
+    size_t peak_rss_bytes;
 } ck_Run;
 
 // The measured pass: fills trajectory, ledger, settings, status and reason.
 // Errors: CK_NO_MEMORY, CK_IO. How the engine fared is in run->status. Free with ck_run_free in any case.
-ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted, const ck_Limits *limits,
-						 ck_Error *error);
+ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted,
+                         const ck_Limits *limits, ck_Error *error);
 
 // One timed repeat, in which nothing is read. Does nothing for a run that has no result to time.
 // Times all frames, or as many as fit into budget seconds by the measured pass, but at least one.

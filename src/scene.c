@@ -11,28 +11,28 @@
 static const cyaml_config_t cyaml = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_NO_ALIAS};
 
 ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
-	*scene = (ck_Scene){0};
-	ck_Status status = ck_document_load(&scene->document, path, error);
-	if (!status) status = ck_scene_check(&scene->document, ck_scene_schema(), error);
-	if (status) return status;
-	cyaml_err_t result = cyaml_load_data(scene->document.text, scene->document.length, &cyaml, ck_scene_schema(),
-										 (cyaml_data_t **)&scene->file, NULL);
-	if (result == CYAML_ERR_OOM) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
-	if (result) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, cyaml_strerror(result));
-	return CK_OK;
+    *scene = (ck_Scene){0};
+    ck_Status status = ck_document_load(&scene->document, path, error);
+    if (!status) status = ck_scene_check(&scene->document, ck_scene_schema(), error);
+    if (status) return status;
+    cyaml_err_t result = cyaml_load_data(scene->document.text, scene->document.length, &cyaml, ck_scene_schema(),
+                                         (cyaml_data_t **)&scene->file, NULL);
+    if (result == CYAML_ERR_OOM) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    if (result) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, cyaml_strerror(result));
+    return CK_OK;
 }
 
 void ck_scene_free(ck_Scene *scene) {
-	cyaml_free(&cyaml, ck_scene_schema(), scene->file, 0);
-	ck_document_free(&scene->document);
-	*scene = (ck_Scene){0};
+    cyaml_free(&cyaml, ck_scene_schema(), scene->file, 0);
+    ck_document_free(&scene->document);
+    *scene = (ck_Scene){0};
 }
 
 ck_Status ck_scene_fail(const ck_Scene *scene, const char *path, ck_Error *error, const char *format, ...) {
-	char message[sizeof error->message];
-	va_list arguments;
-	va_start(arguments, format);
-	vsnprintf(message, sizeof message, format, arguments);
-	va_end(arguments);
-	return ck_document_fail(&scene->document, ck_document_find(&scene->document, path), error, "%s", message);
+    char message[sizeof error->message];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return ck_document_fail(&scene->document, ck_document_find(&scene->document, path), error, "%s", message);
 }

@@ -6,15 +6,15 @@
 
 // What a number must be beyond its type.
 typedef enum ck_Range {
-	CK_RANGE_FINITE,
-	CK_RANGE_POSITIVE,
-	CK_RANGE_NOT_NEGATIVE,
-	CK_RANGE_UNIT, // 0 … 1
+    CK_RANGE_FINITE,
+    CK_RANGE_POSITIVE,
+    CK_RANGE_NOT_NEGATIVE,
+    CK_RANGE_UNIT, // 0 … 1
 } ck_Range;
 
 typedef struct ck_RangeRule {
-	const char *path; // as in "network.nodes[].mass"
-	ck_Range range;
+    const char *path; // as in "network.nodes[].mass"
+    ck_Range range;
 } ck_RangeRule;
 
 extern const ck_RangeRule ck_scene_ranges[]; // ends with a NULL path

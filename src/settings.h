@@ -5,9 +5,9 @@
 #include <stdint.h>
 
 typedef struct ck_Settings {
-	uint32_t substeps;   // steps of the engine per frame (time.step of the scene)
-	uint32_t iterations; // solver iterations per substep, where the method has them
-	double relaxation;   // over-relaxation of an iterative solver, usually 1 … 1.5
+    uint32_t substeps;   // steps of the engine per frame (time.step of the scene)
+    uint32_t iterations; // solver iterations per substep, where the method has them
+    double relaxation;   // over-relaxation of an iterative solver, usually 1 … 1.5
 } ck_Settings;
 
 #endif

@@ -8,93 +8,95 @@
 // Largest eigenvalue of a symmetric 3×3 matrix {xx, yy, zz, xy, xz, yz}.
 // Source: Smith 1961, Eigenvalues of a symmetric 3×3 matrix.
 static double largest_eigenvalue(const double *m) {
-	double mean = (m[0] + m[1] + m[2]) / 3;
-	double xx = m[0] - mean, yy = m[1] - mean, zz = m[2] - mean;
-	double off = m[3] * m[3] + m[4] * m[4] + m[5] * m[5];
-	double p = sqrt((xx * xx + yy * yy + zz * zz + 2 * off) / 6);
-	if (!(p > 0)) return mean;
-	double determinant = xx * (yy * zz - m[5] * m[5]) - m[3] * (m[3] * zz - m[5] * m[4]) + m[4] * (m[3] * m[5] - yy * m[4]);
-	double r = determinant / (2 * p * p * p);
-	return mean + 2 * p * cos(acos(fmax(-1, fmin(1, r))) / 3);
+    double mean = (m[0] + m[1] + m[2]) / 3;
+    double xx = m[0] - mean, yy = m[1] - mean, zz = m[2] - mean;
+    double off = m[3] * m[3] + m[4] * m[4] + m[5] * m[5];
+    double p = sqrt((xx * xx + yy * yy + zz * zz + 2 * off) / 6);
+    if (!(p > 0)) return mean;
+    double determinant =
+        xx * (yy * zz - m[5] * m[5]) - m[3] * (m[3] * zz - m[5] * m[4]) + m[4] * (m[3] * m[5] - yy * m[4]);
+    double r = determinant / (2 * p * p * p);
+    return mean + 2 * p * cos(acos(fmax(-1, fmin(1, r))) / 3);
 }
 
 static void add_outer(double *m, double scale, const double *n) {
-	m[0] += scale * n[0] * n[0];
-	m[1] += scale * n[1] * n[1];
-	m[2] += scale * n[2] * n[2];
-	m[3] += scale * n[0] * n[1];
-	m[4] += scale * n[0] * n[2];
-	m[5] += scale * n[1] * n[2];
+    m[0] += scale * n[0] * n[0];
+    m[1] += scale * n[1] * n[1];
+    m[2] += scale * n[2] * n[2];
+    m[3] += scale * n[0] * n[1];
+    m[4] += scale * n[0] * n[2];
+    m[5] += scale * n[1] * n[2];
 }
 
 ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
-	*frequency = 0;
-	double(*stiffness)[6] = calloc((size_t)model->particle_count, sizeof *stiffness);
-	if (!stiffness) return CK_NO_MEMORY;
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *spring = &model->springs[i];
-		double n[3];
-		ck_subtract(n, model->position + 3 * spring->b, model->position + 3 * spring->a);
-		double length = ck_length(n);
-		if (!(length > 0)) continue;
-		for (int axis = 0; axis < 3; axis++) n[axis] /= length;
-		add_outer(stiffness[spring->a], spring->stiffness, n);
-		add_outer(stiffness[spring->b], spring->stiffness, n);
-	}
-	double largest = 0;
-	for (int i = 0; i < model->particle_count; i++)
-		if (!model->pinned[i]) largest = fmax(largest, 2 * largest_eigenvalue(stiffness[i]) / model->mass[i]);
-	free(stiffness);
-	*frequency = sqrt(largest);
-	return CK_OK;
+    *frequency = 0;
+    double(*stiffness)[6] = calloc((size_t)model->particle_count, sizeof *stiffness);
+    if (!stiffness) return CK_NO_MEMORY;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double n[3];
+        ck_subtract(n, model->position + 3 * spring->b, model->position + 3 * spring->a);
+        double length = ck_length(n);
+        if (!(length > 0)) continue;
+        for (int axis = 0; axis < 3; axis++) n[axis] /= length;
+        add_outer(stiffness[spring->a], spring->stiffness, n);
+        add_outer(stiffness[spring->b], spring->stiffness, n);
+    }
+    double largest = 0;
+    for (int i = 0; i < model->particle_count; i++)
+        if (!model->pinned[i]) largest = fmax(largest, 2 * largest_eigenvalue(stiffness[i]) / model->mass[i]);
+    free(stiffness);
+    *frequency = sqrt(largest);
+    return CK_OK;
 }
 
 double ck_stability_damping_time(const ck_Model *model) {
-	double longest = 0;
-	for (int i = 0; i < model->spring_count; i++)
-		longest = fmax(longest, model->springs[i].damping / model->springs[i].stiffness);
-	return longest;
+    double longest = 0;
+    for (int i = 0; i < model->spring_count; i++)
+        longest = fmax(longest, model->springs[i].damping / model->springs[i].stiffness);
+    return longest;
 }
 
 double ck_stability_stiffness_rate(const ck_Model *model) {
-	double largest = 0;
-	for (int i = 0; i < model->spring_count; i++) {
-		const ck_Spring *spring = &model->springs[i];
-		double weight = ck_model_inverse_mass(model, spring->a) + ck_model_inverse_mass(model, spring->b);
-		largest = fmax(largest, spring->stiffness * weight);
-	}
-	return largest;
+    double largest = 0;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double weight = ck_model_inverse_mass(model, spring->a) + ck_model_inverse_mass(model, spring->b);
+        largest = fmax(largest, spring->stiffness * weight);
+    }
+    return largest;
 }
 
 double ck_stability_load(const ck_Model *model) {
-	double load = 0;
-	for (int i = 0; i < model->particle_count && model->pin_count; i++) {
-		double field[3];
-		ck_model_field(model, i, field);
-		if (!model->pinned[i]) load += model->mass[i] * ck_length(field);
-	}
-	return load;
+    double load = 0;
+    for (int i = 0; i < model->particle_count && model->pin_count; i++) {
+        double field[3];
+        ck_model_field(model, i, field);
+        if (!model->pinned[i]) load += model->mass[i] * ck_length(field);
+    }
+    return load;
 }
 
 double ck_stability_lightness(const ck_Model *model) {
-	double largest = 0;
-	for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, ck_model_inverse_mass(model, i));
-	return largest;
+    double largest = 0;
+    for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, ck_model_inverse_mass(model, i));
+    return largest;
 }
 
 double ck_stability_transverse_time(const ck_Model *model) {
-	double load = ck_stability_load(model);
-	return load > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * load)) : INFINITY;
+    double load = ck_stability_load(model);
+    return load > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * load)) : INFINITY;
 }
 
 double ck_stability_bar_time(const ck_Model *model, uint32_t iterations) {
-	double load = ck_stability_load(model), limit = 1.0 / 240;
-	if (load > 0) limit = fmin(limit, sqrt(1e-3 * iterations * model->spacing / (ck_stability_lightness(model) * load)));
-	return limit;
+    double load = ck_stability_load(model), limit = 1.0 / 240;
+    if (load > 0)
+        limit = fmin(limit, sqrt(1e-3 * iterations * model->spacing / (ck_stability_lightness(model) * load)));
+    return limit;
 }
 
 uint32_t ck_stability_substeps(const ck_Model *model, double limit) {
-	// a hair of slack, so that a limit of exactly one frame asks for one substep
-	double count = ceil(model->step / limit * (1 - 1e-12));
-	return (uint32_t)fmax(1, fmin(count, 100000));
+    // a hair of slack, so that a limit of exactly one frame asks for one substep
+    double count = ceil(model->step / limit * (1 - 1e-12));
+    return (uint32_t)fmax(1, fmin(count, 100000));
 }

@@ -4,11 +4,11 @@
 #include <stdio.h>
 
 ck_Status ck_fail(ck_Error *error, ck_Status status, const char *format, ...) {
-	if (error) {
-		va_list arguments;
-		va_start(arguments, format);
-		vsnprintf(error->message, sizeof error->message, format, arguments);
-		va_end(arguments);
-	}
-	return status;
+    if (error) {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error->message, sizeof error->message, format, arguments);
+        va_end(arguments);
+    }
+    return status;
 }

@@ -11,183 +11,191 @@
 #define MAX_COLUMNS 20
 
 static const struct {
-	const char *name;
-	const char *columns[MAX_COLUMNS];
+    const char *name;
+    const char *columns[MAX_COLUMNS];
 } layouts[CK_TABLE_COUNT] = {
-	[CK_RUNS] = {"runs.csv",
-				 {"scene", "engine", "status", "reason", "time_step_s", "substeps", "iterations", "simulated_s", "cpu_median_s", "cpu_iqr_s",
-				  "cpu_worst_step_s", "realtime_factor", "peak_rss_bytes", "engine_version", "method", "command"}},
-	[CK_METRICS] = {"metrics.csv", {"scene", "engine", "metric", "unit", "value", "truth", "truth_kind", "truth_uncertainty", "error", "predicted"}},
-	[CK_DEVIATIONS] = {"deviations.csv", {"scene", "metric", "engine", "other_engine", "deviation", "unit"}},
-	[CK_LEDGER] = {"ledger.csv", {"scene", "engine", "quantity", "wanted", "unit", "native_parameter", "native_value", "formula", "match"}},
-	[CK_SERIES] = {"series.csv", {"scene", "engine", "time_s", "metric", "value"}},
-	[CK_MACHINE] = {"machine.csv", {"key", "value"}},
+    [CK_RUNS] = {"runs.csv",
+                 {"scene", "engine", "status", "reason", "time_step_s", "substeps", "iterations", "simulated_s",
+                  "cpu_median_s", "cpu_iqr_s", "cpu_worst_step_s", "realtime_factor", "peak_rss_bytes",
+                  "engine_version", "method", "command"}},
+    [CK_METRICS] = {"metrics.csv",
+                    {"scene", "engine", "metric", "unit", "value", "truth", "truth_kind", "truth_uncertainty", "error",
+                     "predicted"}},
+    [CK_DEVIATIONS] = {"deviations.csv", {"scene", "metric", "engine", "other_engine", "deviation", "unit"}},
+    [CK_LEDGER] = {"ledger.csv",
+                   {"scene", "engine", "quantity", "wanted", "unit", "native_parameter", "native_value", "formula",
+                    "match"}},
+    [CK_SERIES] = {"series.csv", {"scene", "engine", "time_s", "metric", "value"}},
+    [CK_MACHINE] = {"machine.csv", {"key", "value"}},
 };
 
 ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *error) {
-	*tables = (ck_Tables){0};
-	int failed = ck_path_make(directory);
-	if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-	ck_Status status = CK_OK;
-	for (int i = 0; i < CK_TABLE_COUNT && !status; i++)
-		status = ck_csv_open(&tables->csv[i], directory, layouts[i].name, layouts[i].columns, error);
-	return status;
+    *tables = (ck_Tables){0};
+    int failed = ck_path_make(directory);
+    if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
+    ck_Status status = CK_OK;
+    for (int i = 0; i < CK_TABLE_COUNT && !status; i++)
+        status = ck_csv_open(&tables->csv[i], directory, layouts[i].name, layouts[i].columns, error);
+    return status;
 }
 
 static size_t add_setting(char *out, size_t size, size_t used, const char *engine, const char *key, double value) {
-	if (!(value > 0) || used >= size) return used;
-	return used + (size_t)snprintf(out + used, size - used, " --set %s.%s=%g", engine, key, value);
+    if (!(value > 0) || used >= size) return used;
+    return used + (size_t)snprintf(out + used, size - used, " --set %s.%s=%g", engine, key, value);
 }
 
 // The command that repeats one run.
-static void write_command(char *out, size_t size, const ck_Comparison *comparison, const ck_Run *run, const ck_CompareOptions *options) {
-	const char *engine = run->engine->name;
-	size_t used = (size_t)snprintf(out, size, "clothcheck run %s --engine %s", comparison->path, engine);
-	for (int i = 0; i < options->override_count; i++) {
-		const ck_Override *override = &options->overrides[i];
-		if (override->engine != run->engine) continue;
-		used = add_setting(out, size, used, engine, "substeps", override->settings.substeps);
-		used = add_setting(out, size, used, engine, "iterations", override->settings.iterations);
-		used = add_setting(out, size, used, engine, "relaxation", override->settings.relaxation);
-	}
+static void write_command(char *out, size_t size, const ck_Comparison *comparison, const ck_Run *run,
+                          const ck_CompareOptions *options) {
+    const char *engine = run->engine->name;
+    size_t used = (size_t)snprintf(out, size, "clothcheck run %s --engine %s", comparison->path, engine);
+    for (int i = 0; i < options->override_count; i++) {
+        const ck_Override *override = &options->overrides[i];
+        if (override->engine != run->engine) continue;
+        used = add_setting(out, size, used, engine, "substeps", override->settings.substeps);
+        used = add_setting(out, size, used, engine, "iterations", override->settings.iterations);
+        used = add_setting(out, size, used, engine, "relaxation", override->settings.relaxation);
+    }
 }
 
 static void add_run(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *run, const ck_CompareOptions *options) {
-	const ck_Timing *timing = &run->timing;
-	char command[4096];
-	write_command(command, sizeof command, comparison, run, options);
-	double median = ck_timing_median(timing), simulated = timing->frames * run->model->step;
-	ck_csv_text(csv, run->model->name);
-	ck_csv_text(csv, run->engine->name);
-	ck_csv_text(csv, ck_run_status_names[run->status]);
-	ck_csv_text(csv, run->reason);
-	ck_csv_number(csv, run->used.substeps ? run->model->step / run->used.substeps : NAN);
-	ck_csv_count(csv, run->used.substeps);
-	ck_csv_count(csv, run->used.iterations);
-	ck_csv_number(csv, simulated);
-	ck_csv_number(csv, median);
-	ck_csv_number(csv, ck_timing_iqr(timing));
-	ck_csv_number(csv, timing->repeat_count ? timing->worst_step : NAN);
-	ck_csv_number(csv, simulated / median);
-	ck_csv_count(csv, run->peak_rss_bytes);
-	ck_csv_text(csv, run->engine->version());
-	ck_csv_text(csv, run->engine->about);
-	ck_csv_text(csv, command);
+    const ck_Timing *timing = &run->timing;
+    char command[4096];
+    write_command(command, sizeof command, comparison, run, options);
+    double median = ck_timing_median(timing), simulated = timing->frames * run->model->step;
+    ck_csv_text(csv, run->model->name);
+    ck_csv_text(csv, run->engine->name);
+    ck_csv_text(csv, ck_run_status_names[run->status]);
+    ck_csv_text(csv, run->reason);
+    ck_csv_number(csv, run->used.substeps ? run->model->step / run->used.substeps : NAN);
+    ck_csv_count(csv, run->used.substeps);
+    ck_csv_count(csv, run->used.iterations);
+    ck_csv_number(csv, simulated);
+    ck_csv_number(csv, median);
+    ck_csv_number(csv, ck_timing_iqr(timing));
+    ck_csv_number(csv, timing->repeat_count ? timing->worst_step : NAN);
+    ck_csv_number(csv, simulated / median);
+    ck_csv_count(csv, run->peak_rss_bytes);
+    ck_csv_text(csv, run->engine->version());
+    ck_csv_text(csv, run->engine->about);
+    ck_csv_text(csv, command);
 }
 
 static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index) {
-	const ck_Run *run = &comparison->runs[index];
-	const ck_Model *model = &comparison->model;
-	const ck_Reference *reference = &comparison->truth.reference, *prediction = &comparison->predictions[index];
-	for (int i = 0; i < ck_metric_count(); i++) {
-		const ck_Metric *metric = ck_metric_at(i);
-		double value = ck_metric_value(metric, model, &run->trajectory, reference);
-		if (!ck_metric_is_wanted(metric, model) || isnan(value)) continue;
-		double truth = ck_metric_truth(metric, model, reference);
-		ck_csv_text(csv, model->name);
-		ck_csv_text(csv, run->engine->name);
-		ck_csv_text(csv, metric->name);
-		ck_csv_text(csv, metric->unit);
-		ck_csv_number(csv, value);
-		ck_csv_number(csv, truth);
-		// where a truth was asked for and is not to be had, the kind says why
-		ck_csv_text(csv, isnan(truth) && comparison->truth.path_count ? "" : comparison->truth.kind);
-		ck_csv_number(csv, ck_truth_uncertainty(&comparison->truth, model, metric));
-		ck_csv_number(csv, fabs(value - truth));
-		// a path of one frame has no whole-run metrics
-		bool foretold = prediction->trajectory.frame_count && (metric->at || !prediction->is_static);
-		ck_csv_number(csv, foretold ? ck_metric_value(metric, model, &prediction->trajectory, reference) : NAN);
-	}
+    const ck_Run *run = &comparison->runs[index];
+    const ck_Model *model = &comparison->model;
+    const ck_Reference *reference = &comparison->truth.reference, *prediction = &comparison->predictions[index];
+    for (int i = 0; i < ck_metric_count(); i++) {
+        const ck_Metric *metric = ck_metric_at(i);
+        double value = ck_metric_value(metric, model, &run->trajectory, reference);
+        if (!ck_metric_is_wanted(metric, model) || isnan(value)) continue;
+        double truth = ck_metric_truth(metric, model, reference);
+        ck_csv_text(csv, model->name);
+        ck_csv_text(csv, run->engine->name);
+        ck_csv_text(csv, metric->name);
+        ck_csv_text(csv, metric->unit);
+        ck_csv_number(csv, value);
+        ck_csv_number(csv, truth);
+        // where a truth was asked for and is not to be had, the kind says why
+        ck_csv_text(csv, isnan(truth) && comparison->truth.path_count ? "" : comparison->truth.kind);
+        ck_csv_number(csv, ck_truth_uncertainty(&comparison->truth, model, metric));
+        ck_csv_number(csv, fabs(value - truth));
+        // a path of one frame has no whole-run metrics
+        bool foretold = prediction->trajectory.frame_count && (metric->at || !prediction->is_static);
+        ck_csv_number(csv, foretold ? ck_metric_value(metric, model, &prediction->trajectory, reference) : NAN);
+    }
 }
 
 // The engine against its own finest run: whether it converges at all, not whether it is right.
 static void add_consistency(ck_Csv *csv, const ck_Comparison *comparison, int index) {
-	for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) {
-		double value = comparison->consistency[index][i];
-		if (isnan(value)) continue;
-		ck_csv_text(csv, comparison->model.name);
-		ck_csv_text(csv, comparison->runs[index].engine->name);
-		ck_csv_text(csv, ck_consistency_names[i]);
-		ck_csv_text(csv, "1");
-		ck_csv_number(csv, value);
-		ck_csv_number(csv, 0);
-		ck_csv_text(csv, "its own finest run");
-		ck_csv_number(csv, NAN);
-		ck_csv_number(csv, value);
-		ck_csv_number(csv, NAN);
-	}
+    for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) {
+        double value = comparison->consistency[index][i];
+        if (isnan(value)) continue;
+        ck_csv_text(csv, comparison->model.name);
+        ck_csv_text(csv, comparison->runs[index].engine->name);
+        ck_csv_text(csv, ck_consistency_names[i]);
+        ck_csv_text(csv, "1");
+        ck_csv_number(csv, value);
+        ck_csv_number(csv, 0);
+        ck_csv_text(csv, "its own finest run");
+        ck_csv_number(csv, NAN);
+        ck_csv_number(csv, value);
+        ck_csv_number(csv, NAN);
+    }
 }
 
 static void add_deviations(ck_Csv *csv, const ck_Comparison *comparison) {
-	const ck_Model *model = &comparison->model;
-	for (int i = 0; i < ck_metric_count(); i++) {
-		const ck_Metric *metric = ck_metric_at(i);
-		for (int one = 0; one < comparison->run_count && ck_metric_is_wanted(metric, model); one++)
-			for (int other = one + 1; other < comparison->run_count; other++) {
-				if (!ck_comparison_has_path(comparison, one) || !ck_comparison_has_path(comparison, other)) continue;
-				double deviation = ck_metric_deviation(metric, model, &comparison->runs[one].trajectory, &comparison->runs[other].trajectory,
-													   &comparison->truth.reference);
-				if (isnan(deviation)) continue;
-				ck_csv_text(csv, model->name);
-				ck_csv_text(csv, metric->name);
-				ck_csv_text(csv, comparison->runs[one].engine->name);
-				ck_csv_text(csv, comparison->runs[other].engine->name);
-				ck_csv_number(csv, deviation);
-				ck_csv_text(csv, metric->unit);
-			}
-	}
+    const ck_Model *model = &comparison->model;
+    for (int i = 0; i < ck_metric_count(); i++) {
+        const ck_Metric *metric = ck_metric_at(i);
+        for (int one = 0; one < comparison->run_count && ck_metric_is_wanted(metric, model); one++)
+            for (int other = one + 1; other < comparison->run_count; other++) {
+                if (!ck_comparison_has_path(comparison, one) || !ck_comparison_has_path(comparison, other)) continue;
+                double deviation =
+                    ck_metric_deviation(metric, model, &comparison->runs[one].trajectory,
+                                        &comparison->runs[other].trajectory, &comparison->truth.reference);
+                if (isnan(deviation)) continue;
+                ck_csv_text(csv, model->name);
+                ck_csv_text(csv, metric->name);
+                ck_csv_text(csv, comparison->runs[one].engine->name);
+                ck_csv_text(csv, comparison->runs[other].engine->name);
+                ck_csv_number(csv, deviation);
+                ck_csv_text(csv, metric->unit);
+            }
+    }
 }
 
 static void add_ledger(ck_Csv *csv, const ck_Run *run) {
-	for (int i = 0; i < run->ledger.count; i++) {
-		const ck_LedgerRow *row = &run->ledger.rows[i];
-		ck_csv_text(csv, run->model->name);
-		ck_csv_text(csv, run->engine->name);
-		ck_csv_text(csv, row->quantity);
-		ck_csv_number(csv, row->wanted);
-		ck_csv_text(csv, row->unit);
-		ck_csv_text(csv, row->native_parameter);
-		ck_csv_number(csv, row->native_value);
-		ck_csv_text(csv, row->formula);
-		ck_csv_text(csv, ck_match_names[row->match]);
-	}
+    for (int i = 0; i < run->ledger.count; i++) {
+        const ck_LedgerRow *row = &run->ledger.rows[i];
+        ck_csv_text(csv, run->model->name);
+        ck_csv_text(csv, run->engine->name);
+        ck_csv_text(csv, row->quantity);
+        ck_csv_number(csv, row->wanted);
+        ck_csv_text(csv, row->unit);
+        ck_csv_text(csv, row->native_parameter);
+        ck_csv_number(csv, row->native_value);
+        ck_csv_text(csv, row->formula);
+        ck_csv_text(csv, ck_match_names[row->match]);
+    }
 }
 
 // Frames as far as the run came: those before a failure tell most about it.
 static void add_series(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *run) {
-	const ck_Model *model = &comparison->model;
-	for (int i = 0; i < ck_metric_count(); i++) {
-		const ck_Metric *metric = ck_metric_at(i);
-		for (int frame = 0; frame < run->trajectory.frame_count && metric->at && ck_metric_is_wanted(metric, model); frame++) {
-			double value = metric->at(model, &run->trajectory, frame, &comparison->truth.reference);
-			if (isnan(value)) continue;
-			ck_csv_text(csv, model->name);
-			ck_csv_text(csv, run->engine->name);
-			ck_csv_number(csv, frame * model->step);
-			ck_csv_text(csv, metric->name);
-			ck_csv_number(csv, value);
-		}
-	}
+    const ck_Model *model = &comparison->model;
+    for (int i = 0; i < ck_metric_count(); i++) {
+        const ck_Metric *metric = ck_metric_at(i);
+        for (int frame = 0; frame < run->trajectory.frame_count && metric->at && ck_metric_is_wanted(metric, model);
+             frame++) {
+            double value = metric->at(model, &run->trajectory, frame, &comparison->truth.reference);
+            if (isnan(value)) continue;
+            ck_csv_text(csv, model->name);
+            ck_csv_text(csv, run->engine->name);
+            ck_csv_number(csv, frame * model->step);
+            ck_csv_text(csv, metric->name);
+            ck_csv_number(csv, value);
+        }
+    }
 }
 
 void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options) {
-	for (int i = 0; i < comparison->run_count; i++) {
-		add_run(&tables->csv[CK_RUNS], comparison, &comparison->runs[i], options);
-		add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
-		add_series(&tables->csv[CK_SERIES], comparison, &comparison->runs[i]);
-		if (ck_comparison_has_path(comparison, i)) add_metrics(&tables->csv[CK_METRICS], comparison, i);
-		add_consistency(&tables->csv[CK_METRICS], comparison, i);
-	}
-	add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
+    for (int i = 0; i < comparison->run_count; i++) {
+        add_run(&tables->csv[CK_RUNS], comparison, &comparison->runs[i], options);
+        add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
+        add_series(&tables->csv[CK_SERIES], comparison, &comparison->runs[i]);
+        if (ck_comparison_has_path(comparison, i)) add_metrics(&tables->csv[CK_METRICS], comparison, i);
+        add_consistency(&tables->csv[CK_METRICS], comparison, i);
+    }
+    add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
 }
 
 ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error) {
-	ck_machine_write(&tables->csv[CK_MACHINE]);
-	ck_Status status = CK_OK;
-	for (int i = 0; i < CK_TABLE_COUNT && !status; i++) status = ck_csv_close(&tables->csv[i], error);
-	return status;
+    ck_machine_write(&tables->csv[CK_MACHINE]);
+    ck_Status status = CK_OK;
+    for (int i = 0; i < CK_TABLE_COUNT && !status; i++) status = ck_csv_close(&tables->csv[i], error);
+    return status;
 }
 
 void ck_tables_discard(ck_Tables *tables) {
-	for (int i = 0; i < CK_TABLE_COUNT; i++) ck_csv_discard(&tables->csv[i]);
+    for (int i = 0; i < CK_TABLE_COUNT; i++) ck_csv_discard(&tables->csv[i]);
 }

@@ -3,24 +3,27 @@
 #include <sys/mman.h>
 
 ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model, ck_Error *error) {
-	*trajectory = (ck_Trajectory){.particle_count = model->particle_count, .capacity = model->frame_count + 1, .step = model->step};
-	trajectory->bytes = sizeof(double) * 6 * (size_t)model->particle_count * (size_t)trajectory->capacity;
-	void *data = mmap(NULL, trajectory->bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-	if (data == MAP_FAILED)
-		return ck_fail(error, CK_NO_MEMORY, "%s: no memory for %d frames of %d particles", model->name, trajectory->capacity, model->particle_count);
-	trajectory->data = data;
-	return CK_OK;
+    *trajectory = (ck_Trajectory){
+        .particle_count = model->particle_count, .capacity = model->frame_count + 1, .step = model->step};
+    trajectory->bytes = sizeof(double) * 6 * (size_t)model->particle_count * (size_t)trajectory->capacity;
+    void *data =
+        mmap(NULL, trajectory->bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (data == MAP_FAILED)
+        return ck_fail(error, CK_NO_MEMORY, "%s: no memory for %d frames of %d particles", model->name,
+                       trajectory->capacity, model->particle_count);
+    trajectory->data = data;
+    return CK_OK;
 }
 
 void ck_trajectory_free(ck_Trajectory *trajectory) {
-	if (trajectory->data) munmap(trajectory->data, trajectory->bytes);
-	*trajectory = (ck_Trajectory){0};
+    if (trajectory->data) munmap(trajectory->data, trajectory->bytes);
+    *trajectory = (ck_Trajectory){0};
 }
 
 double *ck_trajectory_position(const ck_Trajectory *trajectory, int frame) {
-	return trajectory->data + 6 * (size_t)trajectory->particle_count * (size_t)frame;
+    return trajectory->data + 6 * (size_t)trajectory->particle_count * (size_t)frame;
 }
 
 double *ck_trajectory_velocity(const ck_Trajectory *trajectory, int frame) {
-	return ck_trajectory_position(trajectory, frame) + 3 * (size_t)trajectory->particle_count;
+    return ck_trajectory_position(trajectory, frame) + 3 * (size_t)trajectory->particle_count;
 }

@@ -8,12 +8,12 @@
 #include <stddef.h>
 
 typedef struct ck_Trajectory {
-	int particle_count;
-	int frame_count; // frames written, the start among them
-	int capacity;
-	double step;  // s between frames
-	double *data; // [capacity][2][3*n] positions, then velocities; shared with child processes
-	size_t bytes;
+    int particle_count;
+    int frame_count; // frames written, the start among them
+    int capacity;
+    double step;  // s between frames
+    double *data; // [capacity][2][3*n] positions, then velocities; shared with child processes
+    size_t bytes;
 } ck_Trajectory;
 
 // Room for a model's start and all its frames, in memory that a child process can fill.

@@ -15,110 +15,122 @@
 
 // Adding a truth is one function and one row here.
 static const ck_TruthForm forms[] = {
-	{"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true, .solve = ck_truth_solve_equilibrium},
-	{"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), step halved until two runs agree to 1e-9", false, .solve = ck_truth_solve_trajectory},
-	{"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true, .at = ck_truth_vertical_chain},
-	{"catenary", CLOSED, "discrete elastic catenary: l_i = L + |T_i|/k, T_i = T_0 - sum of the weights before, shot to the far pin", true, .at = ck_truth_catenary},
-	{"free_fall", CLOSED, "x = x_0 + v_0*t + a*t^2/2", false, .at = ck_truth_free_fall},
-	{"terminal_speed", CLOSED, "v = v_t + (v_0 - v_t)*exp(-drag*t), v_t = a/drag", false, .at = ck_truth_terminal_speed},
-	{"oscillator", CLOSED, "damped oscillator: u'' = -(k/m)*u - (c/m)*u'", false, .at = ck_truth_oscillator},
-	{"longitudinal_modes", CLOSED, "fixed-free chain: w_j = 2*sqrt(k/m)*sin((2j-1)*pi/(2*(2N+1)))", false, .at = ck_truth_longitudinal_modes},
-	{"taut_string", CLOSED, "beaded string: w_j = 2*sqrt(T/(m*d))*sin(j*pi/(2*(N+1)))", false, .at = ck_truth_taut_string, .off = ck_truth_taut_string_off},
-	{"hanging_chain_modes", CLOSED, "w^2 = (g/l)*zeros of the Laguerre polynomial L_N; shapes L_i", false, .at = ck_truth_hanging_chain, .off = ck_truth_hanging_chain_off},
-	{"pendulum", CLOSED, "sin(theta/2) = sin(theta_0/2)*cd(sqrt(g/L)*t); period 2*pi*sqrt(L/g)/AGM(1, cos(theta_0/2))", false, .at = ck_truth_pendulum},
+    {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
+     .solve = ck_truth_solve_equilibrium},
+    {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), step halved until two runs agree to 1e-9", false,
+     .solve = ck_truth_solve_trajectory},
+    {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
+     .at = ck_truth_vertical_chain},
+    {"catenary", CLOSED,
+     "discrete elastic catenary: l_i = L + |T_i|/k, T_i = T_0 - sum of the weights before, shot to the far pin", true,
+     .at = ck_truth_catenary},
+    {"free_fall", CLOSED, "x = x_0 + v_0*t + a*t^2/2", false, .at = ck_truth_free_fall},
+    {"terminal_speed", CLOSED, "v = v_t + (v_0 - v_t)*exp(-drag*t), v_t = a/drag", false,
+     .at = ck_truth_terminal_speed},
+    {"oscillator", CLOSED, "damped oscillator: u'' = -(k/m)*u - (c/m)*u'", false, .at = ck_truth_oscillator},
+    {"longitudinal_modes", CLOSED, "fixed-free chain: w_j = 2*sqrt(k/m)*sin((2j-1)*pi/(2*(2N+1)))", false,
+     .at = ck_truth_longitudinal_modes},
+    {"taut_string", CLOSED, "beaded string: w_j = 2*sqrt(T/(m*d))*sin(j*pi/(2*(N+1)))", false,
+     .at = ck_truth_taut_string, .off = ck_truth_taut_string_off},
+    {"hanging_chain_modes", CLOSED, "w^2 = (g/l)*zeros of the Laguerre polynomial L_N; shapes L_i", false,
+     .at = ck_truth_hanging_chain, .off = ck_truth_hanging_chain_off},
+    {"pendulum", CLOSED, "sin(theta/2) = sin(theta_0/2)*cd(sqrt(g/L)*t); period 2*pi*sqrt(L/g)/AGM(1, cos(theta_0/2))",
+     false, .at = ck_truth_pendulum},
 };
 
 int ck_truth_count(void) {
-	return sizeof forms / sizeof *forms;
+    return sizeof forms / sizeof *forms;
 }
 
 const ck_TruthForm *ck_truth_form_at(int index) {
-	return &forms[index];
+    return &forms[index];
 }
 
 const ck_TruthForm *ck_truth_form_find(const char *name) {
-	for (int i = 0; i < ck_truth_count(); i++)
-		if (!strcmp(forms[i].name, name)) return &forms[i];
-	return NULL;
+    for (int i = 0; i < ck_truth_count(); i++)
+        if (!strcmp(forms[i].name, name)) return &forms[i];
+    return NULL;
 }
 
 static ck_Status fail_unknown(const ck_Model *model, ck_Error *error) {
-	char known[300] = "";
-	for (int i = 0; i < ck_truth_count(); i++)
-		snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", forms[i].name);
-	return ck_fail(error, CK_BAD_INPUT, "%s: there is no truth %s; known are %s", model->name, model->truth, known);
+    char known[300] = "";
+    for (int i = 0; i < ck_truth_count(); i++)
+        snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", forms[i].name);
+    return ck_fail(error, CK_BAD_INPUT, "%s: there is no truth %s; known are %s", model->name, model->truth, known);
 }
 
 ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {
-	if (!model->truth) return CK_OK;
-	const ck_TruthForm *form = ck_truth_form_find(model->truth);
-	if (!form) return fail_unknown(model, error);
-	if (!form->at) return CK_OK;
-	double *state = malloc(6 * sizeof(double) * (size_t)model->particle_count);
-	if (!state) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
-	ck_Status status = form->at(model, 0, state, state + 3 * model->particle_count, error);
-	free(state);
-	return status;
+    if (!model->truth) return CK_OK;
+    const ck_TruthForm *form = ck_truth_form_find(model->truth);
+    if (!form) return fail_unknown(model, error);
+    if (!form->at) return CK_OK;
+    double *state = malloc(6 * sizeof(double) * (size_t)model->particle_count);
+    if (!state) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    ck_Status status = form->at(model, 0, state, state + 3 * model->particle_count, error);
+    free(state);
+    return status;
 }
 
 // Samples a closed form at the model's frames; a static one once.
 static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
-	ck_Trajectory *path = &truth->paths[0];
-	ck_Status status = ck_trajectory_create(path, model, error);
-	int frames = truth->form->is_static ? 1 : model->frame_count + 1;
-	for (int frame = 0; frame < frames && !status; frame++) {
-		status = truth->form->at(model, frame * model->step, ck_trajectory_position(path, frame), ck_trajectory_velocity(path, frame), error);
-		path->frame_count = frame + 1;
-	}
-	truth->path_count = 1;
-	truth->reference.horizon = path->frame_count - 1;
-	if (truth->form->off) truth->off = truth->form->off(model);
-	return status;
+    ck_Trajectory *path = &truth->paths[0];
+    ck_Status status = ck_trajectory_create(path, model, error);
+    int frames = truth->form->is_static ? 1 : model->frame_count + 1;
+    for (int frame = 0; frame < frames && !status; frame++) {
+        status = truth->form->at(model, frame * model->step, ck_trajectory_position(path, frame),
+                                 ck_trajectory_velocity(path, frame), error);
+        path->frame_count = frame + 1;
+    }
+    truth->path_count = 1;
+    truth->reference.horizon = path->frame_count - 1;
+    if (truth->form->off) truth->off = truth->form->off(model);
+    return status;
 }
 
 static ck_Status solve(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error) {
-	if (cache && ck_truth_cache_load(truth, model, cache)) return CK_OK;
-	ck_Error why = {0};
-	ck_Status status = truth->form->solve(truth, model, &why);
-	if (status == CK_REFUSED) {
-		snprintf(truth->kind, sizeof truth->kind, "none: %.*s", (int)sizeof truth->kind - 8, why.message);
-		for (int i = 0; i < truth->path_count; i++) ck_trajectory_free(&truth->paths[i]);
-		truth->path_count = 0;
-		return CK_OK;
-	}
-	if (status) return ck_fail(error, status, "%s", why.message);
-	// a cache that cannot be written costs time, not truth
-	if (cache) ck_truth_cache_save(truth, model, cache);
-	return CK_OK;
+    if (cache && ck_truth_cache_load(truth, model, cache)) return CK_OK;
+    ck_Error why = {0};
+    ck_Status status = truth->form->solve(truth, model, &why);
+    if (status == CK_REFUSED) {
+        snprintf(truth->kind, sizeof truth->kind, "none: %.*s", (int)sizeof truth->kind - 8, why.message);
+        for (int i = 0; i < truth->path_count; i++) ck_trajectory_free(&truth->paths[i]);
+        truth->path_count = 0;
+        return CK_OK;
+    }
+    if (status) return ck_fail(error, status, "%s", why.message);
+    // a cache that cannot be written costs time, not truth
+    if (cache) ck_truth_cache_save(truth, model, cache);
+    return CK_OK;
 }
 
 ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error) {
-	*truth = (ck_Truth){0};
-	ck_Status status = ck_truth_check(model, error);
-	if (status || !model->truth) return status;
-	truth->form = ck_truth_form_find(model->truth);
-	truth->reference.is_static = truth->form->is_static;
-	snprintf(truth->kind, sizeof truth->kind, "%s", truth->form->kind);
-	status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
-	truth->reference.trajectory = truth->paths[0];
-	if (!status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count)
-		snprintf(truth->kind, sizeof truth->kind, "%s, points to %.3g s", truth->form->kind, truth->reference.horizon * model->step);
-	return status;
+    *truth = (ck_Truth){0};
+    ck_Status status = ck_truth_check(model, error);
+    if (status || !model->truth) return status;
+    truth->form = ck_truth_form_find(model->truth);
+    truth->reference.is_static = truth->form->is_static;
+    snprintf(truth->kind, sizeof truth->kind, "%s", truth->form->kind);
+    status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
+    truth->reference.trajectory = truth->paths[0];
+    if (!status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count)
+        snprintf(truth->kind, sizeof truth->kind, "%s, points to %.3g s", truth->form->kind,
+                 truth->reference.horizon * model->step);
+    return status;
 }
 
 double ck_truth_uncertainty(const ck_Truth *truth, const ck_Model *model, const ck_Metric *metric) {
-	double value = ck_metric_truth(metric, model, &truth->reference);
-	if (isnan(value)) return NAN;
-	double spread = fmax(DBL_EPSILON * fmax(1, fabs(value)), truth->off);
-	// a path of one frame has no whole-run metrics
-	for (int i = 1; i < truth->path_count && (metric->at || !truth->reference.is_static); i++) {
-		double other = ck_metric_value(metric, model, &truth->paths[i], &truth->reference);
-		if (!isnan(other)) spread = fmax(spread, fabs(other - value));
-	}
-	return spread;
+    double value = ck_metric_truth(metric, model, &truth->reference);
+    if (isnan(value)) return NAN;
+    double spread = fmax(DBL_EPSILON * fmax(1, fabs(value)), truth->off);
+    // a path of one frame has no whole-run metrics
+    for (int i = 1; i < truth->path_count && (metric->at || !truth->reference.is_static); i++) {
+        double other = ck_metric_value(metric, model, &truth->paths[i], &truth->reference);
+        if (!isnan(other)) spread = fmax(spread, fabs(other - value));
+    }
+    return spread;
 }
 
 void ck_truth_free(ck_Truth *truth) {
-	for (int i = 0; i < truth->path_count; i++) ck_trajectory_free(&truth->paths[i]);
-	*truth = (ck_Truth){0};
+    for (int i = 0; i < truth->path_count; i++) ck_trajectory_free(&truth->paths[i]);
+    *truth = (ck_Truth){0};
 }

@@ -10,30 +10,31 @@ struct ck_Truth;
 
 // One way to the truth: a table row each. It has either at (a closed form) or solve (computed).
 typedef struct ck_TruthForm {
-	const char *name;   // as a scene names it
-	const char *kind;   // "closed form", "equilibrium", "trajectory"
-	const char *source; // the formula or method, and where it is from
-	bool is_static;
+    const char *name;   // as a scene names it
+    const char *kind;   // "closed form", "equilibrium", "trajectory"
+    const char *source; // the formula or method, and where it is from
+    bool is_static;
 
-	// Writes the state at time s: [3*n] m, [3*n] m/s. A static form ignores time.
-	// Errors: CK_BAD_INPUT where the model is not what the formula is for; the message says what it needs.
-	ck_Status (*at)(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
-	// How far the formula itself is off, in units of size: a linear theory has an amplitude. NULL: it is exact.
-	double (*off)(const ck_Model *model);
+    // Writes the state at time s: [3*n] m, [3*n] m/s. A static form ignores time.
+    // Errors: CK_BAD_INPUT where the model is not what the formula is for; the message says what it needs.
+    ck_Status (*at)(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+    // How far the formula itself is off, in units of size: a linear theory has an amplitude. NULL: it is exact.
+    double (*off)(const ck_Model *model);
 
-	// Fills paths, path_count and the reference's horizon. Errors: CK_REFUSED where there is no such truth, CK_NO_MEMORY.
-	ck_Status (*solve)(struct ck_Truth *truth, const ck_Model *model, ck_Error *error);
+    // Fills paths, path_count and the reference's horizon. Errors: CK_REFUSED where there is no such truth,
+    // CK_NO_MEMORY.
+    ck_Status (*solve)(struct ck_Truth *truth, const ck_Model *model, ck_Error *error);
 } ck_TruthForm;
 
 #define CK_TRUTH_MAX_PATHS 5
 
 typedef struct ck_Truth {
-	const ck_TruthForm *form; // NULL: the scene has none
-	char kind[128];           // form->kind, with what is to be known about it; without a path: why there is none
-	ck_Trajectory paths[CK_TRUTH_MAX_PATHS]; // the truth, then others that are as good: their spread is its uncertainty
-	int path_count;
-	ck_Reference reference; // the first path; owned by paths
-	double off;             // how far a closed form itself is off, in units of size
+    const ck_TruthForm *form; // NULL: the scene has none
+    char kind[128];           // form->kind, with what is to be known about it; without a path: why there is none
+    ck_Trajectory paths[CK_TRUTH_MAX_PATHS]; // the truth, then others that are as good: their spread is its uncertainty
+    int path_count;
+    ck_Reference reference; // the first path; owned by paths
+    double off;             // how far a closed form itself is off, in units of size
 } ck_Truth;
 
 int ck_truth_count(void);
@@ -48,7 +49,8 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error);
 
 // The truth that the model names, at its frames. A computed one is taken from the cache when it is there and whole.
 //   cache  directory, NULL: none
-// Errors: CK_BAD_INPUT, CK_NO_MEMORY. That a computed truth does not exist is no error: kind says why. Free in any case.
+// Errors: CK_BAD_INPUT, CK_NO_MEMORY. That a computed truth does not exist is no error: kind says why. Free in any
+// case.
 ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error);
 
 // The spread of a metric over all paths of the truth, in the metric's unit; NaN where the metric has no truth.

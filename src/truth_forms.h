@@ -5,7 +5,8 @@
 #include "model.h"
 
 // A rope hanging from its first particle, at rest along gravity.
-ck_Status ck_truth_vertical_chain(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+ck_Status ck_truth_vertical_chain(const ck_Model *model, double time, double *position, double *velocity,
+                                  ck_Error *error);
 
 // A rope pinned at both ends, at rest.
 ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);

@@ -5,27 +5,27 @@
 #include <math.h>
 
 static inline double ck_dot(const double *a, const double *b) {
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 static inline double ck_length(const double *a) {
-	return sqrt(ck_dot(a, a));
+    return sqrt(ck_dot(a, a));
 }
 
 // out = a − b
 static inline void ck_subtract(double *out, const double *a, const double *b) {
-	for (int axis = 0; axis < 3; axis++) out[axis] = a[axis] - b[axis];
+    for (int axis = 0; axis < 3; axis++) out[axis] = a[axis] - b[axis];
 }
 
 // out += scale·a
 static inline void ck_add_scaled(double *out, double scale, const double *a) {
-	for (int axis = 0; axis < 3; axis++) out[axis] += scale * a[axis];
+    for (int axis = 0; axis < 3; axis++) out[axis] += scale * a[axis];
 }
 
 static inline double ck_distance(const double *a, const double *b) {
-	double difference[3];
-	ck_subtract(difference, a, b);
-	return ck_length(difference);
+    double difference[3];
+    ck_subtract(difference, a, b);
+    return ck_length(difference);
 }
 
 #endif

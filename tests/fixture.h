@@ -25,7 +25,8 @@ void fixture_load(ck_Comparison *comparison, const char *text);
 
 // Steps an engine through all frames of a model, in this process. Fails the test if it does not get there.
 //   settings  NULL: automatic
-void fixture_run(ck_Trajectory *trajectory, const ck_Model *model, const ck_Engine *engine, const ck_Settings *settings, ck_Settings *used);
+void fixture_run(ck_Trajectory *trajectory, const ck_Model *model, const ck_Engine *engine, const ck_Settings *settings,
+                 ck_Settings *used);
 
 // True where the engine models all that the scene names.
 bool fixture_supports(const ck_Engine *engine, const ck_Model *model);

@@ -9,146 +9,152 @@
 static char directory[] = "/tmp/clothcheck-command-XXXXXX";
 
 static int make_directory(void **state) {
-	(void)state;
-	return mkdtemp(directory) ? 0 : -1;
+    (void)state;
+    return mkdtemp(directory) ? 0 : -1;
 }
 
 static int remove_directory(void **state) {
-	(void)state;
-	char command[100];
-	snprintf(command, sizeof command, "rm -rf %s", directory);
-	return system(command);
+    (void)state;
+    char command[100];
+    snprintf(command, sizeof command, "rm -rf %s", directory);
+    return system(command);
 }
 
 // Runs the program in the source tree and returns its exit status; both streams go to directory/output.
 static int run(const char *arguments) {
-	char command[1000];
-	snprintf(command, sizeof command, "cd %s/.. && %s %s >%s/output 2>&1", SCENE_DIRECTORY, PROGRAM, arguments, directory);
-	int status = system(command);
-	assert_true(WIFEXITED(status));
-	return WEXITSTATUS(status);
+    char command[1000];
+    snprintf(command, sizeof command, "cd %s/.. && %s %s >%s/output 2>&1", SCENE_DIRECTORY, PROGRAM, arguments,
+             directory);
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
 }
 
 static char *read_text(const char *name) {
-	char path[200];
-	snprintf(path, sizeof path, "%s/%s", directory, name);
-	FILE *file = fopen(path, "r");
-	if (!file) return NULL;
-	char *text = calloc(1, 1 << 22);
-	size_t length = fread(text, 1, (1 << 22) - 1, file);
-	text[length] = 0;
-	fclose(file);
-	return text;
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    FILE *file = fopen(path, "r");
+    if (!file) return NULL;
+    char *text = calloc(1, 1 << 22);
+    size_t length = fread(text, 1, (1 << 22) - 1, file);
+    text[length] = 0;
+    fclose(file);
+    return text;
 }
 
 static void assert_output(const char *wanted) {
-	char *output = read_text("output");
-	if (!strstr(output, wanted)) fail_msg("wanted '%s' in: %s", wanted, output);
-	free(output);
+    char *output = read_text("output");
+    if (!strstr(output, wanted)) fail_msg("wanted '%s' in: %s", wanted, output);
+    free(output);
 }
 
 static void test_usage(void **state) {
-	(void)state;
-	static const struct {
-		const char *arguments;
-		int status;
-		const char *output;
-	} cases[] = {
-		{"", 2, "clothcheck compare"},
-		{"--help", 0, "clothcheck compare"},
-		{"--version", 0, "clothcheck 0."},
-		{"fly", 2, "there is no command fly"},
-		{"run --help", 0, "--engine NAME"},
-		{"compare --help", 0, "--time-limit S"},
-		{"list", 0, "native-verlet"},
-		{"list all", 2, "list takes no arguments"},
-		{"run rope_hanging free_fall", 2, "run takes one SCENE, not 2"},
-		{"run rope_hanging --engine havok", 2, "there is no engine havok; known are native-verlet"},
-		{"run rope_hanging --fast", 2, "--fast: no such option"},
-		{"run rope_hanging --out", 2, "needs a value"},
-		{"run rope_hanging --repeats many", 2, "must be a number from 0 to 99"},
-		{"run rope_hanging --set ode-quick.substeps", 2, "must read ENGINE.KEY=NUMBER"},
-		{"run rope_hanging --set ode-quick.substeps=1.5", 2, "the key must be substeps"},
-		{"run rope_hanging --set ode-quick.color=3", 2, "the key must be substeps"},
-		{"run nowhere", 2, "scenes/nowhere.yaml: No such file"},
-		{"run oscillator --engine null --repeats 0", 0, "moves nothing"},
-	};
-	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-		int status = run(cases[i].arguments);
-		if (status != cases[i].status) fail_msg("'%s' ended with %d", cases[i].arguments, status);
-		if (i != sizeof cases / sizeof *cases - 1) assert_output(cases[i].output);
-	}
+    (void)state;
+    static const struct {
+        const char *arguments;
+        int status;
+        const char *output;
+    } cases[] = {
+        {"", 2, "clothcheck compare"},
+        {"--help", 0, "clothcheck compare"},
+        {"--version", 0, "clothcheck 0."},
+        {"fly", 2, "there is no command fly"},
+        {"run --help", 0, "--engine NAME"},
+        {"compare --help", 0, "--time-limit S"},
+        {"list", 0, "native-verlet"},
+        {"list all", 2, "list takes no arguments"},
+        {"run rope_hanging free_fall", 2, "run takes one SCENE, not 2"},
+        {"run rope_hanging --engine havok", 2, "there is no engine havok; known are native-verlet"},
+        {"run rope_hanging --fast", 2, "--fast: no such option"},
+        {"run rope_hanging --out", 2, "needs a value"},
+        {"run rope_hanging --repeats many", 2, "must be a number from 0 to 99"},
+        {"run rope_hanging --set ode-quick.substeps", 2, "must read ENGINE.KEY=NUMBER"},
+        {"run rope_hanging --set ode-quick.substeps=1.5", 2, "the key must be substeps"},
+        {"run rope_hanging --set ode-quick.color=3", 2, "the key must be substeps"},
+        {"run nowhere", 2, "scenes/nowhere.yaml: No such file"},
+        {"run oscillator --engine null --repeats 0", 0, "moves nothing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        int status = run(cases[i].arguments);
+        if (status != cases[i].status) fail_msg("'%s' ended with %d", cases[i].arguments, status);
+        if (i != sizeof cases / sizeof *cases - 1) assert_output(cases[i].output);
+    }
 }
 
 // A bad scene among good ones: nothing runs, nothing is written, not even the directory.
 static void test_bad_input_writes_nothing(void **state) {
-	(void)state;
-	char *bad = fixture_file("name: bad\nrope: {particles: 2, spacing: 1, mass: 0}\ntime: {duration: 1, step: 0.1}\n"), arguments[300], out[100];
-	snprintf(out, sizeof out, "%s/none", directory);
-	snprintf(arguments, sizeof arguments, "compare oscillator %s --out %s", bad, out);
-	assert_int_equal(run(arguments), 2);
-	assert_output(":2:40: rope.mass is 0; it must be a number above 0");
-	assert_int_not_equal(access(out, F_OK), 0);
-	unlink(bad);
-	free(bad);
+    (void)state;
+    char *bad = fixture_file("name: bad\nrope: {particles: 2, spacing: 1, mass: 0}\ntime: {duration: 1, step: 0.1}\n"),
+         arguments[300], out[100];
+    snprintf(out, sizeof out, "%s/none", directory);
+    snprintf(arguments, sizeof arguments, "compare oscillator %s --out %s", bad, out);
+    assert_int_equal(run(arguments), 2);
+    assert_output(":2:40: rope.mass is 0; it must be a number above 0");
+    assert_int_not_equal(access(out, F_OK), 0);
+    unlink(bad);
+    free(bad);
 }
 
 static void test_two_scenes_of_one_name(void **state) {
-	(void)state;
-	assert_int_equal(run("compare oscillator scenes/oscillator.yaml"), 2);
-	assert_output("both named oscillator");
+    (void)state;
+    assert_int_equal(run("compare oscillator scenes/oscillator.yaml"), 2);
+    assert_output("both named oscillator");
 }
 
 static void test_unwritable_output(void **state) {
-	(void)state;
-	assert_int_equal(run("compare oscillator --repeats 0 --out /proc/none"), 1);
-	assert_output("/proc/none: ");
+    (void)state;
+    assert_int_equal(run("compare oscillator --repeats 0 --out /proc/none"), 1);
+    assert_output("/proc/none: ");
 }
 
 // The six files, whole, with the columns of the contract; and twice the same bytes in four of them.
 static void test_comparison_repeats(void **state) {
-	(void)state;
-	static const char *const files[] = {"runs.csv", "machine.csv", "metrics.csv", "deviations.csv", "ledger.csv", "series.csv"};
-	static const char *const headers[] = {
-		"scene,engine,status,reason,time_step_s,substeps,iterations,simulated_s,cpu_median_s,cpu_iqr_s,cpu_worst_step_s,realtime_factor,peak_rss_bytes,"
-		"engine_version,method,command\n",
-		"key,value\n",
-		"scene,engine,metric,unit,value,truth,truth_kind,truth_uncertainty,error,predicted\n",
-		"scene,metric,engine,other_engine,deviation,unit\n",
-		"scene,engine,quantity,wanted,unit,native_parameter,native_value,formula,match\n",
-		"scene,engine,time_s,metric,value\n",
-	};
-	for (int round = 0; round < 2; round++) {
-		char arguments[300];
-		snprintf(arguments, sizeof arguments, "compare free_fall oscillator rope_hanging --repeats %d --seed %d --out %s/%d", round, round + 1, directory, round);
-		assert_int_equal(run(arguments), 0);
-	}
-	for (int i = 0; i < 6; i++) {
-		char name[60];
-		snprintf(name, sizeof name, "0/%s", files[i]);
-		char *first = read_text(name);
-		snprintf(name, sizeof name, "1/%s", files[i]);
-		char *second = read_text(name);
-		assert_non_null(first);
-		assert_non_null(second);
-		if (strncmp(first, headers[i], strlen(headers[i]))) fail_msg("%s begins with %.200s", files[i], first);
-		if (i >= 2) assert_string_equal(first, second);
-		free(first);
-		free(second);
-	}
-	char pattern[100];
-	glob_t left;
-	snprintf(pattern, sizeof pattern, "%s/0/*.part", directory);
-	assert_int_equal(glob(pattern, 0, NULL, &left), GLOB_NOMATCH);
+    (void)state;
+    static const char *const files[] = {"runs.csv",       "machine.csv", "metrics.csv",
+                                        "deviations.csv", "ledger.csv",  "series.csv"};
+    static const char *const headers[] = {
+        "scene,engine,status,reason,time_step_s,substeps,iterations,simulated_s,cpu_median_s,cpu_iqr_s,cpu_worst_step_"
+        "s,realtime_factor,peak_rss_bytes,"
+        "engine_version,method,command\n",
+        "key,value\n",
+        "scene,engine,metric,unit,value,truth,truth_kind,truth_uncertainty,error,predicted\n",
+        "scene,metric,engine,other_engine,deviation,unit\n",
+        "scene,engine,quantity,wanted,unit,native_parameter,native_value,formula,match\n",
+        "scene,engine,time_s,metric,value\n",
+    };
+    for (int round = 0; round < 2; round++) {
+        char arguments[300];
+        snprintf(arguments, sizeof arguments,
+                 "compare free_fall oscillator rope_hanging --repeats %d --seed %d --out %s/%d", round, round + 1,
+                 directory, round);
+        assert_int_equal(run(arguments), 0);
+    }
+    for (int i = 0; i < 6; i++) {
+        char name[60];
+        snprintf(name, sizeof name, "0/%s", files[i]);
+        char *first = read_text(name);
+        snprintf(name, sizeof name, "1/%s", files[i]);
+        char *second = read_text(name);
+        assert_non_null(first);
+        assert_non_null(second);
+        if (strncmp(first, headers[i], strlen(headers[i]))) fail_msg("%s begins with %.200s", files[i], first);
+        if (i >= 2) assert_string_equal(first, second);
+        free(first);
+        free(second);
+    }
+    char pattern[100];
+    glob_t left;
+    snprintf(pattern, sizeof pattern, "%s/0/*.part", directory);
+    assert_int_equal(glob(pattern, 0, NULL, &left), GLOB_NOMATCH);
 }
 
 int main(void) {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_usage),
-		cmocka_unit_test(test_bad_input_writes_nothing),
-		cmocka_unit_test(test_two_scenes_of_one_name),
-		cmocka_unit_test(test_unwritable_output),
-		cmocka_unit_test(test_comparison_repeats),
-	};
-	return cmocka_run_group_tests(tests, make_directory, remove_directory);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_usage),
+        cmocka_unit_test(test_bad_input_writes_nothing),
+        cmocka_unit_test(test_two_scenes_of_one_name),
+        cmocka_unit_test(test_unwritable_output),
+        cmocka_unit_test(test_comparison_repeats),
+    };
+    return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }

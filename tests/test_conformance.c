@@ -4,204 +4,222 @@
 #include "prediction.h"
 #include "vector.h"
 
-static const char fall[] = "name: fall\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1, down: [0, 0, 1]}\nsprings: {stiffness: 50, shear: 20}\n"
-						   "gravity: [1, -9.81, 0]\nvelocity: [0.5, 2, -1]\ntime: {duration: 0.5, step: 0.01}\ntruth: free_fall\n";
-static const char swing[] = "name: swing\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: {stiffness: 100, damping: 0.5}\npins: [first]\n"
-							"velocity: [0.1, 0, 0]\ntime: {duration: 1, step: 0.02}\ntruth: oscillator\n";
-static const char hang[] = "name: hang\nrope: {particles: 8, spacing: 0.1, mass: 0.4}\nsprings: {stiffness: 2000, damping: 0.2}\npins: [first]\n"
-						   "gravity: [0, -9.81, 0]\ndrag: 12\ntime: {duration: 4, step: 0.02}\ntruth: vertical_chain\n";
-static const char drift[] = "name: drift\ncloth: {rows: 4, columns: 4, spacing: 0.1, mass: 0.16}\nsprings: {stiffness: 40, damping: 0.01, shear: 20}\n"
-							"noise: {amplitude: 0.02, seed: 3}\nvelocity: [1, -2, 0.5]\ntime: {duration: 0.5, step: 0.01}\n";
+static const char fall[] =
+    "name: fall\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1, down: [0, 0, 1]}\nsprings: {stiffness: 50, "
+    "shear: 20}\n"
+    "gravity: [1, -9.81, 0]\nvelocity: [0.5, 2, -1]\ntime: {duration: 0.5, step: 0.01}\ntruth: free_fall\n";
+static const char swing[] = "name: swing\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: "
+                            "{stiffness: 100, damping: 0.5}\npins: [first]\n"
+                            "velocity: [0.1, 0, 0]\ntime: {duration: 1, step: 0.02}\ntruth: oscillator\n";
+static const char hang[] = "name: hang\nrope: {particles: 8, spacing: 0.1, mass: 0.4}\nsprings: {stiffness: 2000, "
+                           "damping: 0.2}\npins: [first]\n"
+                           "gravity: [0, -9.81, 0]\ndrag: 12\ntime: {duration: 4, step: 0.02}\ntruth: vertical_chain\n";
+static const char drift[] =
+    "name: drift\ncloth: {rows: 4, columns: 4, spacing: 0.1, mass: 0.16}\nsprings: {stiffness: 40, damping: 0.01, "
+    "shear: 20}\n"
+    "noise: {amplitude: 0.02, seed: 3}\nvelocity: [1, -2, 0.5]\ntime: {duration: 0.5, step: 0.01}\n";
 // a pendulum of one spring, which also turns: nothing about it is linear
-static const char turn[] = "name: turn\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: {stiffness: 400, damping: 1}\npins: [first]\n"
-						   "gravity: [0, -9.81, 0]\ntime: {duration: 0.4, step: 0.02}\n";
-static const char turn_rigid[] = "name: turn_rigid\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: {rigid: true}\npins: [first]\n"
-								 "gravity: [0, -9.81, 0]\ntime: {duration: 0.4, step: 0.02}\n";
+static const char turn[] = "name: turn\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: "
+                           "{stiffness: 400, damping: 1}\npins: [first]\n"
+                           "gravity: [0, -9.81, 0]\ntime: {duration: 0.4, step: 0.02}\n";
+static const char turn_rigid[] = "name: turn_rigid\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, "
+                                 "0]}\nsprings: {rigid: true}\npins: [first]\n"
+                                 "gravity: [0, -9.81, 0]\ntime: {duration: 0.4, step: 0.02}\n";
 
 // The rms distance, / size, of a run to what theory predicts of it; NaN where there is no theory.
-static double distance_to_prediction(const ck_Comparison *comparison, const ck_Trajectory *trajectory, const ck_Engine *engine, const ck_Settings *used) {
-	ck_Reference prediction;
-	assert_int_equal(ck_prediction_create(&prediction, &comparison->model, engine, used, &comparison->truth, NULL), CK_OK);
-	double distance = ck_metric_value(ck_metric_find("position_rms"), &comparison->model, trajectory, &prediction);
-	ck_trajectory_free(&prediction.trajectory);
-	return distance;
+static double distance_to_prediction(const ck_Comparison *comparison, const ck_Trajectory *trajectory,
+                                     const ck_Engine *engine, const ck_Settings *used) {
+    ck_Reference prediction;
+    assert_int_equal(ck_prediction_create(&prediction, &comparison->model, engine, used, &comparison->truth, NULL),
+                     CK_OK);
+    double distance = ck_metric_value(ck_metric_find("position_rms"), &comparison->model, trajectory, &prediction);
+    ck_trajectory_free(&prediction.trajectory);
+    return distance;
 }
 
 static void check_prediction(const char *text, double tolerance) {
-	ck_Comparison comparison;
-	fixture_load(&comparison, text);
-	assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
-	for (int i = 0; i < ck_engine_count(); i++) {
-		const ck_Engine *engine = ck_engine_at(i);
-		if (engine->method == CK_METHOD_NONE) continue;
-		ck_Trajectory trajectory;
-		ck_Settings used;
-		fixture_run(&trajectory, &comparison.model, engine, NULL, &used);
-		double distance = distance_to_prediction(&comparison, &trajectory, engine, &used);
-		if (!isnan(distance)) assert_near(engine->name, distance, 0, tolerance);
-		if (isnan(distance) && engine->order) fail_msg("%s has no theory on %s", engine->name, comparison.model.name);
-		ck_trajectory_free(&trajectory);
-	}
-	ck_comparison_free(&comparison);
+    ck_Comparison comparison;
+    fixture_load(&comparison, text);
+    assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        if (engine->method == CK_METHOD_NONE) continue;
+        ck_Trajectory trajectory;
+        ck_Settings used;
+        fixture_run(&trajectory, &comparison.model, engine, NULL, &used);
+        double distance = distance_to_prediction(&comparison, &trajectory, engine, &used);
+        if (!isnan(distance)) assert_near(engine->name, distance, 0, tolerance);
+        if (isnan(distance) && engine->order) fail_msg("%s has no theory on %s", engine->name, comparison.model.name);
+        ck_trajectory_free(&trajectory);
+    }
+    ck_comparison_free(&comparison);
 }
 
 // Free fall has a closed form for each method: only rounding may be left, some 1e-16 for each of ~1e3 substeps.
 static void test_free_fall(void **state) {
-	(void)state;
-	check_prediction(fall, 1e-11);
+    (void)state;
+    check_prediction(fall, 1e-11);
 }
 
 // One spring along one line can be followed substep by substep with pencil and paper: only rounding may be left.
 static void test_oscillator(void **state) {
-	(void)state;
-	check_prediction(swing, 1e-12);
+    (void)state;
+    check_prediction(swing, 1e-12);
 }
 
 // At rest every method's stretch is known, to what drag has left of the motion: exp(−12·4/2) = 4e-11. native-bars takes
 // its own theory to first order in strain, of which it has 1e-3.
 static void test_static_hang(void **state) {
-	(void)state;
-	check_prediction(hang, 1e-6);
+    (void)state;
+    check_prediction(hang, 1e-6);
 }
 
 static void center_of_mass(const ck_Model *model, const double *position, double *center) {
-	double total = 0;
-	memset(center, 0, 3 * sizeof(double));
-	for (int i = 0; i < model->particle_count; i++) {
-		ck_add_scaled(center, model->mass[i], position + 3 * i);
-		total += model->mass[i];
-	}
-	for (int axis = 0; axis < 3; axis++) center[axis] /= total;
+    double total = 0;
+    memset(center, 0, 3 * sizeof(double));
+    for (int i = 0; i < model->particle_count; i++) {
+        ck_add_scaled(center, model->mass[i], position + 3 * i);
+        total += model->mass[i];
+    }
+    for (int axis = 0; axis < 3; axis++) center[axis] /= total;
 }
 
 // Internal forces cannot move the centre of mass, nor turn the body. Bullet's conjugate gradient stops at 2e-16 of the
 // squared residual, so that 1e-8 of the speed may be left per step.
 static void test_momentum(void **state) {
-	(void)state;
-	ck_Comparison comparison;
-	fixture_load(&comparison, drift);
-	const ck_Model *model = &comparison.model;
-	double start[3], end[3];
-	center_of_mass(model, model->position, start);
-	for (int i = 0; i < ck_engine_count(); i++) {
-		const ck_Engine *engine = ck_engine_at(i);
-		if (engine->method == CK_METHOD_NONE) continue;
-		ck_Trajectory trajectory;
-		fixture_run(&trajectory, model, engine, NULL, NULL);
-		center_of_mass(model, ck_trajectory_position(&trajectory, model->frame_count), end);
-		for (int axis = 0; axis < 3; axis++) assert_near(engine->name, end[axis] - start[axis], model->duration * model->velocity[axis], 1e-8);
-		// the noise has moved it: a frozen body would pass as well
-		double moved = ck_metric_deviation(ck_metric_find("stretch_rms"), model, &trajectory, &trajectory, &comparison.truth.reference);
-		double first = ck_metric_find("stretch_rms")->at(model, &trajectory, 0, &comparison.truth.reference);
-		double last = ck_metric_find("stretch_rms")->at(model, &trajectory, model->frame_count, &comparison.truth.reference);
-		assert_near("a run and itself", moved, 0, 0);
-		assert_true(fabs(last - first) > 0.1 * first);
-		ck_trajectory_free(&trajectory);
-	}
-	ck_comparison_free(&comparison);
+    (void)state;
+    ck_Comparison comparison;
+    fixture_load(&comparison, drift);
+    const ck_Model *model = &comparison.model;
+    double start[3], end[3];
+    center_of_mass(model, model->position, start);
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        if (engine->method == CK_METHOD_NONE) continue;
+        ck_Trajectory trajectory;
+        fixture_run(&trajectory, model, engine, NULL, NULL);
+        center_of_mass(model, ck_trajectory_position(&trajectory, model->frame_count), end);
+        for (int axis = 0; axis < 3; axis++)
+            assert_near(engine->name, end[axis] - start[axis], model->duration * model->velocity[axis], 1e-8);
+        // the noise has moved it: a frozen body would pass as well
+        double moved = ck_metric_deviation(ck_metric_find("stretch_rms"), model, &trajectory, &trajectory,
+                                           &comparison.truth.reference);
+        double first = ck_metric_find("stretch_rms")->at(model, &trajectory, 0, &comparison.truth.reference);
+        double last =
+            ck_metric_find("stretch_rms")->at(model, &trajectory, model->frame_count, &comparison.truth.reference);
+        assert_near("a run and itself", moved, 0, 0);
+        assert_true(fabs(last - first) > 0.1 * first);
+        ck_trajectory_free(&trajectory);
+    }
+    ck_comparison_free(&comparison);
 }
 
-// Order from three runs at dt, dt/2 and dt/4, without any truth: log2 of the ratio of their differences. The next term of
-// the error, at these steps some ω·dt = 0.01 of the first, allows 0.15.
+// Order from three runs at dt, dt/2 and dt/4, without any truth: log2 of the ratio of their differences. The next term
+// of the error, at these steps some ω·dt = 0.01 of the first, allows 0.15.
 static void test_order(void **state) {
-	(void)state;
-	for (int i = 0; i < ck_engine_count(); i++) {
-		const ck_Engine *engine = ck_engine_at(i);
-		if (engine->method == CK_METHOD_NONE) continue;
-		ck_Comparison comparison;
-		fixture_load(&comparison, engine->order ? turn : turn_rigid);
-		ck_Trajectory trajectory[3];
-		for (int level = 0; level < 3; level++) {
-			ck_Settings settings = {.substeps = 40u << level};
-			fixture_run(&trajectory[level], &comparison.model, engine, &settings, NULL);
-		}
-		const ck_Metric *distance = ck_metric_find("position_rms");
-		double coarse = distance->between(&comparison.model, &trajectory[0], &trajectory[1]);
-		double fine = distance->between(&comparison.model, &trajectory[1], &trajectory[2]);
-		char what[100];
-		snprintf(what, sizeof what, "the order of %s (differences %.3g and %.3g)", engine->name, coarse, fine);
-		// bars follow the field to second order, and have no elastic motion to be counted by
-		assert_near(what, log2(coarse / fine), engine->order ? engine->order : 2, 0.15);
-		for (int level = 0; level < 3; level++) ck_trajectory_free(&trajectory[level]);
-		ck_comparison_free(&comparison);
-	}
+    (void)state;
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        if (engine->method == CK_METHOD_NONE) continue;
+        ck_Comparison comparison;
+        fixture_load(&comparison, engine->order ? turn : turn_rigid);
+        ck_Trajectory trajectory[3];
+        for (int level = 0; level < 3; level++) {
+            ck_Settings settings = {.substeps = 40u << level};
+            fixture_run(&trajectory[level], &comparison.model, engine, &settings, NULL);
+        }
+        const ck_Metric *distance = ck_metric_find("position_rms");
+        double coarse = distance->between(&comparison.model, &trajectory[0], &trajectory[1]);
+        double fine = distance->between(&comparison.model, &trajectory[1], &trajectory[2]);
+        char what[100];
+        snprintf(what, sizeof what, "the order of %s (differences %.3g and %.3g)", engine->name, coarse, fine);
+        // bars follow the field to second order, and have no elastic motion to be counted by
+        assert_near(what, log2(coarse / fine), engine->order ? engine->order : 2, 0.15);
+        for (int level = 0; level < 3; level++) ck_trajectory_free(&trajectory[level]);
+        ck_comparison_free(&comparison);
+    }
 }
 
 // The same bits twice in one process, which shares what engines keep in globals.
 static void test_bitwise_repeat(void **state) {
-	(void)state;
-	const char *const texts[] = {hang, drift, turn};
-	for (size_t text = 0; text < sizeof texts / sizeof *texts; text++) {
-		ck_Comparison comparison;
-		fixture_load(&comparison, texts[text]);
-		for (int i = 0; i < ck_engine_count(); i++) {
-			ck_Trajectory first, second;
-			fixture_run(&first, &comparison.model, ck_engine_at(i), NULL, NULL);
-			fixture_run(&second, &comparison.model, ck_engine_at(i), NULL, NULL);
-			if (memcmp(first.data, second.data, first.bytes)) fail_msg("%s on %s differs between two runs", ck_engine_at(i)->name, comparison.model.name);
-			ck_trajectory_free(&first);
-			ck_trajectory_free(&second);
-		}
-		ck_comparison_free(&comparison);
-	}
+    (void)state;
+    const char *const texts[] = {hang, drift, turn};
+    for (size_t text = 0; text < sizeof texts / sizeof *texts; text++) {
+        ck_Comparison comparison;
+        fixture_load(&comparison, texts[text]);
+        for (int i = 0; i < ck_engine_count(); i++) {
+            ck_Trajectory first, second;
+            fixture_run(&first, &comparison.model, ck_engine_at(i), NULL, NULL);
+            fixture_run(&second, &comparison.model, ck_engine_at(i), NULL, NULL);
+            if (memcmp(first.data, second.data, first.bytes))
+                fail_msg("%s on %s differs between two runs", ck_engine_at(i)->name, comparison.model.name);
+            ck_trajectory_free(&first);
+            ck_trajectory_free(&second);
+        }
+        ck_comparison_free(&comparison);
+    }
 }
 
 // An engine's distance to its own finest run grows with its step as its order says. At these pieces some ω·dt = 0.05 of
 // the next term is left, and from the finest run 1/8: 2^order within 35 %. Softened springs change with the step too.
 static void test_self_consistency(void **state) {
-	(void)state;
-	for (int i = 0; i < ck_engine_count(); i++) {
-		const ck_Engine *engine = ck_engine_at(i);
-		ck_Comparison comparison;
-		fixture_load(&comparison, engine->order ? turn : turn_rigid);
-		ck_Settings wanted = {.substeps = 64};
-		ck_Limits limits = ck_limits_default();
-		ck_Run run;
-		assert_int_equal(ck_run_measure(&run, &comparison.model, engine, &wanted, &limits, NULL), CK_OK);
-		assert_int_equal(run.status, CK_RUN_OK);
-		double deviation[CK_CONSISTENCY_STEPS];
-		assert_int_equal(ck_consistency_measure(deviation, &run, 100, &limits, NULL), CK_OK);
-		int order = engine->method == CK_METHOD_STOERMER_BARS ? 2 : engine->order;
-		// the null engine is consistent, and wrong
-		if (!order) assert_near(engine->name, deviation[0], 0, 0);
-		for (int step = 0; order && step + 1 < CK_CONSISTENCY_STEPS; step++)
-			assert_near(engine->name, deviation[step + 1] / deviation[step], 1 << order, 0.35 * (1 << order));
-		ck_run_free(&run);
-		ck_comparison_free(&comparison);
-	}
+    (void)state;
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        ck_Comparison comparison;
+        fixture_load(&comparison, engine->order ? turn : turn_rigid);
+        ck_Settings wanted = {.substeps = 64};
+        ck_Limits limits = ck_limits_default();
+        ck_Run run;
+        assert_int_equal(ck_run_measure(&run, &comparison.model, engine, &wanted, &limits, NULL), CK_OK);
+        assert_int_equal(run.status, CK_RUN_OK);
+        double deviation[CK_CONSISTENCY_STEPS];
+        assert_int_equal(ck_consistency_measure(deviation, &run, 100, &limits, NULL), CK_OK);
+        int order = engine->method == CK_METHOD_STOERMER_BARS ? 2 : engine->order;
+        // the null engine is consistent, and wrong
+        if (!order) assert_near(engine->name, deviation[0], 0, 0);
+        for (int step = 0; order && step + 1 < CK_CONSISTENCY_STEPS; step++)
+            assert_near(engine->name, deviation[step + 1] / deviation[step], 1 << order, 0.35 * (1 << order));
+        ck_run_free(&run);
+        ck_comparison_free(&comparison);
+    }
 }
 
 // Each engine says what it made of every quantity of the scene, and nothing of what the scene does not name.
 static void test_ledger(void **state) {
-	(void)state;
-	ck_Comparison comparison;
-	fixture_load(&comparison, hang);
-	for (int i = 0; i < ck_engine_count(); i++) {
-		const ck_Engine *engine = ck_engine_at(i);
-		if (engine->method == CK_METHOD_NONE) continue;
-		ck_Ledger ledger = {0};
-		ck_Settings used, wanted = {0};
-		void *world;
-		assert_int_equal(engine->create(&world, &comparison.model, &wanted, &used, &ledger, NULL), CK_OK);
-		engine->destroy(world);
-		const char *const quantities[] = {"time step", "mass", "gravity", "drag", "structural stiffness", "spring damping"};
-		for (size_t quantity = 0; quantity < sizeof quantities / sizeof *quantities; quantity++) {
-			bool found = false;
-			for (int row = 0; row < ledger.count; row++) found |= !strcmp(ledger.rows[row].quantity, quantities[quantity]);
-			if (!found) fail_msg("%s says nothing of %s", engine->name, quantities[quantity]);
-		}
-		for (int row = 0; row < ledger.count; row++) {
-			assert_string_not_equal(ledger.rows[row].quantity, "shear stiffness");
-			assert_string_not_equal(ledger.rows[row].quantity, "force");
-		}
-	}
-	ck_comparison_free(&comparison);
+    (void)state;
+    ck_Comparison comparison;
+    fixture_load(&comparison, hang);
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        if (engine->method == CK_METHOD_NONE) continue;
+        ck_Ledger ledger = {0};
+        ck_Settings used, wanted = {0};
+        void *world;
+        assert_int_equal(engine->create(&world, &comparison.model, &wanted, &used, &ledger, NULL), CK_OK);
+        engine->destroy(world);
+        const char *const quantities[] = {"time step",     "mass", "gravity", "drag", "structural stiffness",
+                                          "spring damping"};
+        for (size_t quantity = 0; quantity < sizeof quantities / sizeof *quantities; quantity++) {
+            bool found = false;
+            for (int row = 0; row < ledger.count; row++)
+                found |= !strcmp(ledger.rows[row].quantity, quantities[quantity]);
+            if (!found) fail_msg("%s says nothing of %s", engine->name, quantities[quantity]);
+        }
+        for (int row = 0; row < ledger.count; row++) {
+            assert_string_not_equal(ledger.rows[row].quantity, "shear stiffness");
+            assert_string_not_equal(ledger.rows[row].quantity, "force");
+        }
+    }
+    ck_comparison_free(&comparison);
 }
 
 int main(void) {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_free_fall), cmocka_unit_test(test_oscillator),      cmocka_unit_test(test_static_hang), cmocka_unit_test(test_momentum),
-		cmocka_unit_test(test_order),     cmocka_unit_test(test_bitwise_repeat), cmocka_unit_test(test_ledger), cmocka_unit_test(test_self_consistency),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_free_fall),   cmocka_unit_test(test_oscillator),
+        cmocka_unit_test(test_static_hang), cmocka_unit_test(test_momentum),
+        cmocka_unit_test(test_order),       cmocka_unit_test(test_bitwise_repeat),
+        cmocka_unit_test(test_ledger),      cmocka_unit_test(test_self_consistency),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

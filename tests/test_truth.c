@@ -1,4 +1,5 @@
-// Every truth against another way to the same: closed forms against the equilibrium solver and the reference integrator.
+// Every truth against another way to the same: closed forms against the equilibrium solver and the reference
+// integrator.
 #include "fixture.h"
 
 #include "equilibrium.h"
@@ -11,279 +12,326 @@
 
 // largest distance of two sets of positions, / size
 static double apart(const ck_Model *model, const double *one, const double *other) {
-	double largest = 0;
-	for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, ck_distance(one + 3 * i, other + 3 * i));
-	return largest / model->size;
+    double largest = 0;
+    for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, ck_distance(one + 3 * i, other + 3 * i));
+    return largest / model->size;
 }
 
 #define HANGING_TIME "gravity: [0, -9.81, 0]\ndrag: 8\ntime: {duration: 2, step: 0.02}\n"
 
 // Closed forms of rest against the energy minimum.
 static void test_rest(void **state) {
-	(void)state;
-	static const struct {
-		const char *text;
-		double tolerance; // of the size
-	} cases[] = {
-		{"name: chain\nrope: {particles: 20, spacing: 0.1, mass: 1}\nsprings: {stiffness: 1000}\npins: [first]\ntruth: vertical_chain\n" HANGING_TIME, 1e-10},
-		{"name: heavy\nrope: {particles: 20, spacing: 0.1, mass: 0.2, end_mass: 10}\nsprings: {stiffness: 1.0e+5}\npins: [first]\ntruth: vertical_chain\n" HANGING_TIME, 1e-10},
-		{"name: level\nrope: {particles: 20, spacing: 0.1, mass: 1, along: [1, 0, 0]}\nsprings: {stiffness: 1000}\npins: [first, last]\ntruth: catenary\n" HANGING_TIME, 1e-10},
-		{"name: oblique\nrope: {particles: 15, spacing: 0.2, mass: 2, along: [1, 2, -1]}\nsprings: {stiffness: 400}\npins: [first, last]\ntruth: catenary\n" HANGING_TIME, 1e-10},
-		// slack: longer than its chord
-		{"name: slack\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: [2, -1.5, 0], mass: 2}, {at: [3, -1, 0], mass: 1}, {at: [4, 0.5, 0], mass: 1}],\n"
-		 "  bars: [[0, 1], [1, 2], [2, 3], [3, 4]]}\nsprings: {stiffness: 3000}\npins: [0, 4]\ntruth: catenary\n" HANGING_TIME, 1e-10},
-	};
-	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-		ck_Comparison comparison;
-		fixture_load(&comparison, cases[i].text);
-		ck_Error error = {0};
-		ck_Equilibrium equilibrium;
-		if (ck_equilibrium_release(&equilibrium, &comparison.model, 0, 0, &error)) fail_msg("%s", error.message);
-		assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, &error), CK_OK);
-		assert_near(comparison.model.name, apart(&comparison.model, equilibrium.position, comparison.truth.paths[0].data), 0, cases[i].tolerance);
-		assert_true(equilibrium.residual <= CK_EQUILIBRIUM_RESIDUAL && equilibrium.is_minimum);
-		ck_equilibrium_free(&equilibrium);
-		ck_comparison_free(&comparison);
-	}
+    (void)state;
+    static const struct {
+        const char *text;
+        double tolerance; // of the size
+    } cases[] = {
+        {"name: chain\nrope: {particles: 20, spacing: 0.1, mass: 1}\nsprings: {stiffness: 1000}\npins: [first]\ntruth: "
+         "vertical_chain\n" HANGING_TIME,
+         1e-10},
+        {"name: heavy\nrope: {particles: 20, spacing: 0.1, mass: 0.2, end_mass: 10}\nsprings: {stiffness: "
+         "1.0e+5}\npins: [first]\ntruth: vertical_chain\n" HANGING_TIME,
+         1e-10},
+        {"name: level\nrope: {particles: 20, spacing: 0.1, mass: 1, along: [1, 0, 0]}\nsprings: {stiffness: "
+         "1000}\npins: [first, last]\ntruth: catenary\n" HANGING_TIME,
+         1e-10},
+        {"name: oblique\nrope: {particles: 15, spacing: 0.2, mass: 2, along: [1, 2, -1]}\nsprings: {stiffness: "
+         "400}\npins: [first, last]\ntruth: catenary\n" HANGING_TIME,
+         1e-10},
+        // slack: longer than its chord
+        {"name: slack\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: [2, -1.5, 0], mass: "
+         "2}, {at: [3, -1, 0], mass: 1}, {at: [4, 0.5, 0], mass: 1}],\n"
+         "  bars: [[0, 1], [1, 2], [2, 3], [3, 4]]}\nsprings: {stiffness: 3000}\npins: [0, 4]\ntruth: "
+         "catenary\n" HANGING_TIME,
+         1e-10},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        ck_Comparison comparison;
+        fixture_load(&comparison, cases[i].text);
+        ck_Error error = {0};
+        ck_Equilibrium equilibrium;
+        if (ck_equilibrium_release(&equilibrium, &comparison.model, 0, 0, &error)) fail_msg("%s", error.message);
+        assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, &error), CK_OK);
+        assert_near(comparison.model.name,
+                    apart(&comparison.model, equilibrium.position, comparison.truth.paths[0].data), 0,
+                    cases[i].tolerance);
+        assert_true(equilibrium.residual <= CK_EQUILIBRIUM_RESIDUAL && equilibrium.is_minimum);
+        ck_equilibrium_free(&equilibrium);
+        ck_comparison_free(&comparison);
+    }
 }
 
 // The inextensible catenary is that of bars. Springs come to it as strain ε = load/(k·d), here 7e-5 and half that; what
 // both together extrapolate to is off by some ε².
 static void test_inextensible_catenary(void **state) {
-	(void)state;
-	static const char text[] = "name: bars\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: [2, -1.5, 0], mass: 2}, {at: [3, -1, 0], mass: 1}, {at: [4, 0.5, 0], mass: 1}],\n"
-							   "  bars: [[0, 1], [1, 2], [2, 3], [3, 4]]}\nsprings: {%s}\npins: [0, 4]\n%s" HANGING_TIME;
-	static const char *const springs[] = {"rigid: true", "stiffness: 1.0e+6", "stiffness: 2.0e+6"};
-	ck_Comparison comparison[3];
-	ck_Equilibrium equilibrium[3] = {0};
-	for (int i = 0; i < 3; i++) {
-		char scene[800];
-		snprintf(scene, sizeof scene, text, springs[i], i ? "" : "truth: catenary\n");
-		fixture_load(&comparison[i], scene);
-		ck_Error error = {0};
-		if (!i) assert_int_equal(ck_truth_create(&comparison[0].truth, &comparison[0].model, NULL, NULL), CK_OK);
-		if (i && ck_equilibrium_solve(&equilibrium[i], &comparison[i].model, comparison[0].truth.paths[0].data, &error)) fail_msg("%s", error.message);
-	}
-	const ck_Model *bars = &comparison[0].model;
-	double limit[15];
-	for (int i = 0; i < 3 * bars->particle_count; i++) limit[i] = 2 * equilibrium[2].position[i] - equilibrium[1].position[i];
-	assert_near("the limit of stiff springs", apart(bars, limit, comparison[0].truth.paths[0].data), 0, 4 * 7e-5 * 7e-5);
-	// the limit is needed: the springs alone are farther off
-	assert_true(apart(bars, equilibrium[2].position, comparison[0].truth.paths[0].data) > 1e-6);
-	for (int i = 0; i < 3; i++) {
-		ck_equilibrium_free(&equilibrium[i]);
-		ck_comparison_free(&comparison[i]);
-	}
+    (void)state;
+    static const char text[] =
+        "name: bars\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: [2, -1.5, 0], mass: "
+        "2}, {at: [3, -1, 0], mass: 1}, {at: [4, 0.5, 0], mass: 1}],\n"
+        "  bars: [[0, 1], [1, 2], [2, 3], [3, 4]]}\nsprings: {%s}\npins: [0, 4]\n%s" HANGING_TIME;
+    static const char *const springs[] = {"rigid: true", "stiffness: 1.0e+6", "stiffness: 2.0e+6"};
+    ck_Comparison comparison[3];
+    ck_Equilibrium equilibrium[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        char scene[800];
+        snprintf(scene, sizeof scene, text, springs[i], i ? "" : "truth: catenary\n");
+        fixture_load(&comparison[i], scene);
+        ck_Error error = {0};
+        if (!i) assert_int_equal(ck_truth_create(&comparison[0].truth, &comparison[0].model, NULL, NULL), CK_OK);
+        if (i && ck_equilibrium_solve(&equilibrium[i], &comparison[i].model, comparison[0].truth.paths[0].data, &error))
+            fail_msg("%s", error.message);
+    }
+    const ck_Model *bars = &comparison[0].model;
+    double limit[15];
+    for (int i = 0; i < 3 * bars->particle_count; i++)
+        limit[i] = 2 * equilibrium[2].position[i] - equilibrium[1].position[i];
+    assert_near("the limit of stiff springs", apart(bars, limit, comparison[0].truth.paths[0].data), 0,
+                4 * 7e-5 * 7e-5);
+    // the limit is needed: the springs alone are farther off
+    assert_true(apart(bars, equilibrium[2].position, comparison[0].truth.paths[0].data) > 1e-6);
+    for (int i = 0; i < 3; i++) {
+        ck_equilibrium_free(&equilibrium[i]);
+        ck_comparison_free(&comparison[i]);
+    }
 }
 
 // Closed forms of motion against the reference integrator, within what the form itself says it is off.
 static void test_motion(void **state) {
-	(void)state;
-	static const char *const texts[] = {
-		"name: fall\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1}\nsprings: {stiffness: 50, shear: 20}\ngravity: [1, -9.81, 0]\nvelocity: [0.5, 2, -1]\n"
-		"time: {duration: 0.5, step: 0.05}\ntruth: free_fall\n",
-		"name: drag\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1}\nsprings: {stiffness: 50, shear: 20}\ngravity: [1, -9.81, 0]\nvelocity: [0.5, 2, -1]\ndrag: 3\n"
-		"time: {duration: 1, step: 0.05}\ntruth: terminal_speed\n",
-		"name: one\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 2, 2]}\nsprings: {stiffness: 100, damping: 0.5}\npins: [first]\nvelocity: [0.1, 0.2, 0.2]\n"
-		"drag: 0.3\ntime: {duration: 2, step: 0.05}\ntruth: oscillator\n",
-		"name: many\nrope: {particles: 9, spacing: 0.2, mass: 0.9, along: [0, 0, 1]}\nsprings: {stiffness: 300, damping: 0.4}\npins: [first]\nvelocity: [0, 0, 0.2]\n"
-		"drag: 0.2\ntime: {duration: 1, step: 0.05}\ntruth: longitudinal_modes\n",
-		// spring damping beyond critical in the higher modes
-		"name: damped\nrope: {particles: 6, spacing: 0.2, mass: 0.6, along: [0, 0, 1]}\nsprings: {stiffness: 300, damping: 8}\npins: [first]\nvelocity: [0, 0, 0.2]\n"
-		"time: {duration: 1, step: 0.05}\ntruth: longitudinal_modes\n",
-		"name: string\nrope: {particles: 12, spacing: 0.1, mass: 0.12, along: [1, 0, 0]}\nsprings: {stiffness: 500, prestretch: 0.25}\npins: [first, last]\nvelocity: [0, 0.001, 0]\n"
-		"drag: 0.5\ntime: {duration: 0.5, step: 0.01}\ntruth: taut_string\n",
-		"name: chain\nrope: {particles: 11, spacing: 0.1, mass: 0.11, along: [0, -1, 0]}\nsprings: {stiffness: 1.0e+6}\npins: [first]\ngravity: [0, -9.81, 0]\nvelocity: [0.01, 0, 0]\n"
-		"time: {duration: 1, step: 0.02}\ntruth: hanging_chain_modes\n",
-	};
-	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-		ck_Comparison comparison;
-		fixture_load(&comparison, texts[i]);
-		const ck_Model *model = &comparison.model;
-		ck_Error error = {0};
-		ck_ReferencePath path;
-		if (ck_reference_path_create(&path, model, &error)) fail_msg("%s", error.message);
-		assert_int_equal(ck_truth_create(&comparison.truth, model, NULL, &error), CK_OK);
-		double largest = 0, speed = 0;
-		for (int frame = 0; frame <= model->frame_count; frame++) {
-			largest = fmax(largest, apart(model, ck_trajectory_position(&path.fine, frame), ck_trajectory_position(&comparison.truth.paths[0], frame)));
-			speed = fmax(speed, apart(model, ck_trajectory_velocity(&path.fine, frame), ck_trajectory_velocity(&comparison.truth.paths[0], frame)));
-		}
-		assert_near(model->name, largest, 0, 1e-9 + comparison.truth.off);
-		// velocities are off by the highest of the frequencies times as much
-		if (comparison.truth.off == 0) assert_near(model->name, speed, 0, 1e-6);
-		ck_reference_path_free(&path);
-		ck_comparison_free(&comparison);
-	}
+    (void)state;
+    static const char *const texts[] = {
+        "name: fall\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1}\nsprings: {stiffness: 50, shear: "
+        "20}\ngravity: [1, -9.81, 0]\nvelocity: [0.5, 2, -1]\n"
+        "time: {duration: 0.5, step: 0.05}\ntruth: free_fall\n",
+        "name: drag\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1}\nsprings: {stiffness: 50, shear: "
+        "20}\ngravity: [1, -9.81, 0]\nvelocity: [0.5, 2, -1]\ndrag: 3\n"
+        "time: {duration: 1, step: 0.05}\ntruth: terminal_speed\n",
+        "name: one\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 2, 2]}\nsprings: {stiffness: 100, damping: "
+        "0.5}\npins: [first]\nvelocity: [0.1, 0.2, 0.2]\n"
+        "drag: 0.3\ntime: {duration: 2, step: 0.05}\ntruth: oscillator\n",
+        "name: many\nrope: {particles: 9, spacing: 0.2, mass: 0.9, along: [0, 0, 1]}\nsprings: {stiffness: 300, "
+        "damping: 0.4}\npins: [first]\nvelocity: [0, 0, 0.2]\n"
+        "drag: 0.2\ntime: {duration: 1, step: 0.05}\ntruth: longitudinal_modes\n",
+        // spring damping beyond critical in the higher modes
+        "name: damped\nrope: {particles: 6, spacing: 0.2, mass: 0.6, along: [0, 0, 1]}\nsprings: {stiffness: 300, "
+        "damping: 8}\npins: [first]\nvelocity: [0, 0, 0.2]\n"
+        "time: {duration: 1, step: 0.05}\ntruth: longitudinal_modes\n",
+        "name: string\nrope: {particles: 12, spacing: 0.1, mass: 0.12, along: [1, 0, 0]}\nsprings: {stiffness: 500, "
+        "prestretch: 0.25}\npins: [first, last]\nvelocity: [0, 0.001, 0]\n"
+        "drag: 0.5\ntime: {duration: 0.5, step: 0.01}\ntruth: taut_string\n",
+        "name: chain\nrope: {particles: 11, spacing: 0.1, mass: 0.11, along: [0, -1, 0]}\nsprings: {stiffness: "
+        "1.0e+6}\npins: [first]\ngravity: [0, -9.81, 0]\nvelocity: [0.01, 0, 0]\n"
+        "time: {duration: 1, step: 0.02}\ntruth: hanging_chain_modes\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        ck_Comparison comparison;
+        fixture_load(&comparison, texts[i]);
+        const ck_Model *model = &comparison.model;
+        ck_Error error = {0};
+        ck_ReferencePath path;
+        if (ck_reference_path_create(&path, model, &error)) fail_msg("%s", error.message);
+        assert_int_equal(ck_truth_create(&comparison.truth, model, NULL, &error), CK_OK);
+        double largest = 0, speed = 0;
+        for (int frame = 0; frame <= model->frame_count; frame++) {
+            largest = fmax(largest, apart(model, ck_trajectory_position(&path.fine, frame),
+                                          ck_trajectory_position(&comparison.truth.paths[0], frame)));
+            speed = fmax(speed, apart(model, ck_trajectory_velocity(&path.fine, frame),
+                                      ck_trajectory_velocity(&comparison.truth.paths[0], frame)));
+        }
+        assert_near(model->name, largest, 0, 1e-9 + comparison.truth.off);
+        // velocities are off by the highest of the frequencies times as much
+        if (comparison.truth.off == 0) assert_near(model->name, speed, 0, 1e-6);
+        ck_reference_path_free(&path);
+        ck_comparison_free(&comparison);
+    }
 }
 
-// A pendulum of a spring of 1e11 N/m in place of the bar: 1e-10 longer. The reference integrator keeps the period to 1e-9.
+// A pendulum of a spring of 1e11 N/m in place of the bar: 1e-10 longer. The reference integrator keeps the period to
+// 1e-9.
 static void test_pendulum(void **state) {
-	(void)state;
-	static const char text[] = "name: pendulum\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: {%s}\npins: [first]\ngravity: [0, -9.81, 0]\n"
-							   "time: {duration: 4, step: 0.00390625}\n%s";
-	char rigid[400], stiff[400];
-	snprintf(rigid, sizeof rigid, text, "rigid: true", "truth: pendulum\n");
-	snprintf(stiff, sizeof stiff, text, "stiffness: 1.0e+11", "");
-	ck_Comparison bar, spring;
-	fixture_load(&bar, rigid);
-	fixture_load(&spring, stiff);
-	assert_int_equal(ck_truth_create(&bar.truth, &bar.model, NULL, NULL), CK_OK);
-	ck_Trajectory path;
-	// ω·dt = 0.6: the spring itself is followed, though it hardly moves
-	assert_int_equal(ck_reference_integrate(&path, &spring.model, 2048, 0, NULL), CK_OK);
-	const ck_Metric *period = ck_metric_find("period");
-	// 2π√(L/g)/AGM(1, cos 45°), by hand
-	double a = 1, b = sqrt(0.5);
-	for (int i = 0; i < 8; i++) {
-		double mean = 0.5 * (a + b);
-		b = sqrt(a * b);
-		a = mean;
-	}
-	double exact = 2 * 3.14159265358979323846 / sqrt(9.81) / a;
-	assert_near("the closed form's period", ck_metric_truth(period, &bar.model, &bar.truth.reference), exact, 1e-9 * exact);
-	assert_near("the reference's period", ck_metric_value(period, &spring.model, &path, &bar.truth.reference), exact, 1e-9 * exact);
-	ck_trajectory_free(&path);
-	ck_comparison_free(&bar);
-	ck_comparison_free(&spring);
+    (void)state;
+    static const char text[] = "name: pendulum\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: "
+                               "{%s}\npins: [first]\ngravity: [0, -9.81, 0]\n"
+                               "time: {duration: 4, step: 0.00390625}\n%s";
+    char rigid[400], stiff[400];
+    snprintf(rigid, sizeof rigid, text, "rigid: true", "truth: pendulum\n");
+    snprintf(stiff, sizeof stiff, text, "stiffness: 1.0e+11", "");
+    ck_Comparison bar, spring;
+    fixture_load(&bar, rigid);
+    fixture_load(&spring, stiff);
+    assert_int_equal(ck_truth_create(&bar.truth, &bar.model, NULL, NULL), CK_OK);
+    ck_Trajectory path;
+    // ω·dt = 0.6: the spring itself is followed, though it hardly moves
+    assert_int_equal(ck_reference_integrate(&path, &spring.model, 2048, 0, NULL), CK_OK);
+    const ck_Metric *period = ck_metric_find("period");
+    // 2π√(L/g)/AGM(1, cos 45°), by hand
+    double a = 1, b = sqrt(0.5);
+    for (int i = 0; i < 8; i++) {
+        double mean = 0.5 * (a + b);
+        b = sqrt(a * b);
+        a = mean;
+    }
+    double exact = 2 * 3.14159265358979323846 / sqrt(9.81) / a;
+    assert_near("the closed form's period", ck_metric_truth(period, &bar.model, &bar.truth.reference), exact,
+                1e-9 * exact);
+    assert_near("the reference's period", ck_metric_value(period, &spring.model, &path, &bar.truth.reference), exact,
+                1e-9 * exact);
+    ck_trajectory_free(&path);
+    ck_comparison_free(&bar);
+    ck_comparison_free(&spring);
 }
 
 // Fourth order: halving the step divides the difference by 16.
 static void test_reference_order(void **state) {
-	(void)state;
-	ck_Comparison comparison;
-	fixture_load(&comparison, "name: swing\nrope: {particles: 4, spacing: 0.5, mass: 1, along: [1, 0, 0]}\nsprings: {stiffness: 200, damping: 0.5}\npins: [first]\n"
-							  "gravity: [0, -9.81, 0]\ndrag: 0.2\ntime: {duration: 0.5, step: 0.05}\n");
-	ck_Trajectory path[3];
-	for (int level = 0; level < 3; level++) assert_int_equal(ck_reference_integrate(&path[level], &comparison.model, 20 << level, 0, NULL), CK_OK);
-	const ck_Metric *distance = ck_metric_find("position_rms");
-	double coarse = distance->between(&comparison.model, &path[0], &path[1]), fine = distance->between(&comparison.model, &path[1], &path[2]);
-	assert_near("order", log2(coarse / fine), 4, 0.15);
-	for (int level = 0; level < 3; level++) ck_trajectory_free(&path[level]);
-	ck_comparison_free(&comparison);
+    (void)state;
+    ck_Comparison comparison;
+    fixture_load(&comparison, "name: swing\nrope: {particles: 4, spacing: 0.5, mass: 1, along: [1, 0, 0]}\nsprings: "
+                              "{stiffness: 200, damping: 0.5}\npins: [first]\n"
+                              "gravity: [0, -9.81, 0]\ndrag: 0.2\ntime: {duration: 0.5, step: 0.05}\n");
+    ck_Trajectory path[3];
+    for (int level = 0; level < 3; level++)
+        assert_int_equal(ck_reference_integrate(&path[level], &comparison.model, 20 << level, 0, NULL), CK_OK);
+    const ck_Metric *distance = ck_metric_find("position_rms");
+    double coarse = distance->between(&comparison.model, &path[0], &path[1]),
+           fine = distance->between(&comparison.model, &path[1], &path[2]);
+    assert_near("order", log2(coarse / fine), 4, 0.15);
+    for (int level = 0; level < 3; level++) ck_trajectory_free(&path[level]);
+    ck_comparison_free(&comparison);
 }
 
 // A rope thrown about is chaotic: its horizon ends before the scene does. A damped one is not.
 static void test_horizon(void **state) {
-	(void)state;
-	static const char text[] = "name: wild\nrope: {particles: 20, spacing: 0.1, mass: 1, along: [1, 0.3, 0]}\nsprings: {stiffness: 1000}\npins: [first]\nnoise: {amplitude: 0.01, seed: 2}\n"
-							   "gravity: [0, -9.81, 0]\ndrag: %g\ntime: {duration: 3, step: 0.02}\ntruth: trajectory\n";
-	for (int damped = 0; damped < 2; damped++) {
-		char scene[500];
-		snprintf(scene, sizeof scene, text, damped ? 8.0 : 0.0);
-		ck_Comparison comparison;
-		fixture_load(&comparison, scene);
-		assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
-		int horizon = comparison.truth.reference.horizon;
-		if (damped) assert_int_equal(horizon, comparison.model.frame_count);
-		if (!damped && (horizon < 20 || horizon >= comparison.model.frame_count)) fail_msg("horizon at frame %d", horizon);
-		assert_true(damped == !strstr(comparison.truth.kind, "points to"));
-		ck_comparison_free(&comparison);
-	}
+    (void)state;
+    static const char text[] = "name: wild\nrope: {particles: 20, spacing: 0.1, mass: 1, along: [1, 0.3, 0]}\nsprings: "
+                               "{stiffness: 1000}\npins: [first]\nnoise: {amplitude: 0.01, seed: 2}\n"
+                               "gravity: [0, -9.81, 0]\ndrag: %g\ntime: {duration: 3, step: 0.02}\ntruth: trajectory\n";
+    for (int damped = 0; damped < 2; damped++) {
+        char scene[500];
+        snprintf(scene, sizeof scene, text, damped ? 8.0 : 0.0);
+        ck_Comparison comparison;
+        fixture_load(&comparison, scene);
+        assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+        int horizon = comparison.truth.reference.horizon;
+        if (damped) assert_int_equal(horizon, comparison.model.frame_count);
+        if (!damped && (horizon < 20 || horizon >= comparison.model.frame_count))
+            fail_msg("horizon at frame %d", horizon);
+        assert_true(damped == !strstr(comparison.truth.kind, "points to"));
+        ck_comparison_free(&comparison);
+    }
 }
 
 // A truth is solved once; a cache that is damaged anywhere is not believed.
 static void test_cache(void **state) {
-	(void)state;
-	char directory[] = "/tmp/clothcheck-truth-XXXXXX", pattern[100];
-	assert_non_null(mkdtemp(directory));
-	ck_Comparison comparison;
-	fixture_load(&comparison, "name: net\ncloth: {rows: 4, columns: 4, spacing: 0.1, mass: 0.1}\nsprings: {stiffness: 100, shear: 50}\npins: [top_left, top_right]\ntruth: equilibrium\n" HANGING_TIME);
-	const ck_Model *model = &comparison.model;
-	ck_Truth solved, cached = {.form = ck_truth_form_find("equilibrium")};
-	assert_int_equal(ck_truth_create(&solved, model, directory, NULL), CK_OK);
-	assert_true(ck_truth_cache_load(&cached, model, directory));
-	assert_int_equal(cached.path_count, solved.path_count);
-	assert_memory_equal(cached.paths[0].data, solved.paths[0].data, solved.paths[0].bytes);
-	ck_truth_free(&cached);
+    (void)state;
+    char directory[] = "/tmp/clothcheck-truth-XXXXXX", pattern[100];
+    assert_non_null(mkdtemp(directory));
+    ck_Comparison comparison;
+    fixture_load(&comparison, "name: net\ncloth: {rows: 4, columns: 4, spacing: 0.1, mass: 0.1}\nsprings: {stiffness: "
+                              "100, shear: 50}\npins: [top_left, top_right]\ntruth: equilibrium\n" HANGING_TIME);
+    const ck_Model *model = &comparison.model;
+    ck_Truth solved, cached = {.form = ck_truth_form_find("equilibrium")};
+    assert_int_equal(ck_truth_create(&solved, model, directory, NULL), CK_OK);
+    assert_true(ck_truth_cache_load(&cached, model, directory));
+    assert_int_equal(cached.path_count, solved.path_count);
+    assert_memory_equal(cached.paths[0].data, solved.paths[0].data, solved.paths[0].bytes);
+    ck_truth_free(&cached);
 
-	glob_t found;
-	snprintf(pattern, sizeof pattern, "%s/*.truth", directory);
-	assert_int_equal(glob(pattern, 0, NULL, &found), 0);
-	assert_int_equal(found.gl_pathc, 1);
-	FILE *file = fopen(found.gl_pathv[0], "r+b");
-	fseek(file, 0, SEEK_END);
-	long length = ftell(file);
-	for (long at = 0; at < length; at += length / 37) {
-		fseek(file, at, SEEK_SET);
-		int byte = fgetc(file);
-		fseek(file, at, SEEK_SET);
-		fputc(byte ^ 0x10, file);
-		fflush(file);
-		cached = (ck_Truth){.form = solved.form};
-		if (ck_truth_cache_load(&cached, model, directory)) fail_msg("believed a cache with byte %ld of %ld changed", at, length);
-		fseek(file, at, SEEK_SET);
-		fputc(byte, file);
-		fflush(file);
-	}
-	assert_int_equal(ftruncate(fileno(file), length / 2), 0);
-	fclose(file);
-	assert_false(ck_truth_cache_load(&cached, model, directory));
-	// and is made anew
-	ck_Truth again;
-	assert_int_equal(ck_truth_create(&again, model, directory, NULL), CK_OK);
-	assert_memory_equal(again.paths[0].data, solved.paths[0].data, solved.paths[0].bytes);
-	cached = (ck_Truth){.form = solved.form};
-	assert_true(ck_truth_cache_load(&cached, model, directory));
-	// another model is another truth
-	comparison.model.mass[5] *= 1.0001;
-	ck_truth_free(&cached);
-	cached = (ck_Truth){.form = solved.form};
-	assert_false(ck_truth_cache_load(&cached, model, directory));
-	unlink(found.gl_pathv[0]);
-	rmdir(directory);
-	globfree(&found);
-	ck_truth_free(&solved);
-	ck_truth_free(&again);
-	ck_comparison_free(&comparison);
+    glob_t found;
+    snprintf(pattern, sizeof pattern, "%s/*.truth", directory);
+    assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+    assert_int_equal(found.gl_pathc, 1);
+    FILE *file = fopen(found.gl_pathv[0], "r+b");
+    fseek(file, 0, SEEK_END);
+    long length = ftell(file);
+    for (long at = 0; at < length; at += length / 37) {
+        fseek(file, at, SEEK_SET);
+        int byte = fgetc(file);
+        fseek(file, at, SEEK_SET);
+        fputc(byte ^ 0x10, file);
+        fflush(file);
+        cached = (ck_Truth){.form = solved.form};
+        if (ck_truth_cache_load(&cached, model, directory))
+            fail_msg("believed a cache with byte %ld of %ld changed", at, length);
+        fseek(file, at, SEEK_SET);
+        fputc(byte, file);
+        fflush(file);
+    }
+    assert_int_equal(ftruncate(fileno(file), length / 2), 0);
+    fclose(file);
+    assert_false(ck_truth_cache_load(&cached, model, directory));
+    // and is made anew
+    ck_Truth again;
+    assert_int_equal(ck_truth_create(&again, model, directory, NULL), CK_OK);
+    assert_memory_equal(again.paths[0].data, solved.paths[0].data, solved.paths[0].bytes);
+    cached = (ck_Truth){.form = solved.form};
+    assert_true(ck_truth_cache_load(&cached, model, directory));
+    // another model is another truth
+    comparison.model.mass[5] *= 1.0001;
+    ck_truth_free(&cached);
+    cached = (ck_Truth){.form = solved.form};
+    assert_false(ck_truth_cache_load(&cached, model, directory));
+    unlink(found.gl_pathv[0]);
+    rmdir(directory);
+    globfree(&found);
+    ck_truth_free(&solved);
+    ck_truth_free(&again);
+    ck_comparison_free(&comparison);
 }
 
-// The start in the plane of symmetry ends on a saddle, which is no rest position: the truth leaves it and says nothing false.
+// The start in the plane of symmetry ends on a saddle, which is no rest position: the truth leaves it and says nothing
+// false.
 static void test_saddle(void **state) {
-	(void)state;
-	ck_Comparison comparison;
-	// two bars in line, pushed together: the middle node balances on the line
-	fixture_load(&comparison, "name: strut\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [0, -1, 0], mass: 1}, {at: [0, -2, 0], mass: 1}], bars: [[0, 1], [1, 2]]}\n"
-							  "springs: {stiffness: 20, damping: 3}\npins: [2]\ntruth: equilibrium\n" HANGING_TIME);
-	ck_Equilibrium equilibrium;
-	ck_Error error = {0};
-	// standing on its pin: in balance, and not a minimum
-	assert_int_equal(ck_equilibrium_release(&equilibrium, &comparison.model, 0, 0, &error), CK_REFUSED);
-	assert_non_null(strstr(error.message, "no minimum"));
-	ck_equilibrium_free(&equilibrium);
-	ck_comparison_free(&comparison);
+    (void)state;
+    ck_Comparison comparison;
+    // two bars in line, pushed together: the middle node balances on the line
+    fixture_load(&comparison, "name: strut\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [0, -1, 0], mass: 1}, "
+                              "{at: [0, -2, 0], mass: 1}], bars: [[0, 1], [1, 2]]}\n"
+                              "springs: {stiffness: 20, damping: 3}\npins: [2]\ntruth: equilibrium\n" HANGING_TIME);
+    ck_Equilibrium equilibrium;
+    ck_Error error = {0};
+    // standing on its pin: in balance, and not a minimum
+    assert_int_equal(ck_equilibrium_release(&equilibrium, &comparison.model, 0, 0, &error), CK_REFUSED);
+    assert_non_null(strstr(error.message, "no minimum"));
+    ck_equilibrium_free(&equilibrium);
+    ck_comparison_free(&comparison);
 }
 
 // Every shipped scene with a truth at rest: the forces balance to 1e-10 of the load.
 static void test_shipped_equilibria(void **state) {
-	(void)state;
-	glob_t found;
-	assert_int_equal(glob(SCENE_DIRECTORY "/*.yaml", 0, NULL, &found), 0);
-	int checked = 0;
-	for (size_t i = 0; i < found.gl_pathc; i++) {
-		ck_Error error = {0};
-		ck_Comparison comparison;
-		assert_int_equal(ck_comparison_load(&comparison, found.gl_pathv[i], &error), CK_OK);
-		// 64×64 takes a minute of its own
-		bool at_rest = comparison.model.truth && !strcmp(comparison.model.truth, "equilibrium") && comparison.model.particle_count < 1000;
-		if (at_rest) {
-			if (ck_truth_create(&comparison.truth, &comparison.model, NULL, &error)) fail_msg("%s", error.message);
-			if (!comparison.truth.path_count) fail_msg("%s", comparison.truth.kind);
-			double residual = ck_equilibrium_residual(&comparison.model, comparison.truth.paths[0].data);
-			assert_near(comparison.model.name, residual, 0, CK_EQUILIBRIUM_RESIDUAL);
-			checked++;
-		}
-		ck_comparison_free(&comparison);
-	}
-	globfree(&found);
-	assert_true(checked >= 4);
+    (void)state;
+    glob_t found;
+    assert_int_equal(glob(SCENE_DIRECTORY "/*.yaml", 0, NULL, &found), 0);
+    int checked = 0;
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        ck_Error error = {0};
+        ck_Comparison comparison;
+        assert_int_equal(ck_comparison_load(&comparison, found.gl_pathv[i], &error), CK_OK);
+        // 64×64 takes a minute of its own
+        bool at_rest = comparison.model.truth && !strcmp(comparison.model.truth, "equilibrium") &&
+                       comparison.model.particle_count < 1000;
+        if (at_rest) {
+            if (ck_truth_create(&comparison.truth, &comparison.model, NULL, &error)) fail_msg("%s", error.message);
+            if (!comparison.truth.path_count) fail_msg("%s", comparison.truth.kind);
+            double residual = ck_equilibrium_residual(&comparison.model, comparison.truth.paths[0].data);
+            assert_near(comparison.model.name, residual, 0, CK_EQUILIBRIUM_RESIDUAL);
+            checked++;
+        }
+        ck_comparison_free(&comparison);
+    }
+    globfree(&found);
+    assert_true(checked >= 4);
 }
 
 int main(void) {
-	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(test_rest),    cmocka_unit_test(test_inextensible_catenary), cmocka_unit_test(test_motion), cmocka_unit_test(test_pendulum),
-		cmocka_unit_test(test_reference_order), cmocka_unit_test(test_horizon),     cmocka_unit_test(test_cache),  cmocka_unit_test(test_saddle),
-		cmocka_unit_test(test_shipped_equilibria),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_inextensible_catenary),
+        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_pendulum),
+        cmocka_unit_test(test_reference_order),
+        cmocka_unit_test(test_horizon),
+        cmocka_unit_test(test_cache),
+        cmocka_unit_test(test_saddle),
+        cmocka_unit_test(test_shipped_equilibria),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }
