@@ -75,7 +75,7 @@ bool ck_bullet_body_is_finite(const ck_BulletBody &body) {
     return true;
 }
 
-void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used) {
+void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter) {
     ck_ledger_add(ledger,
                   {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
     ck_ledger_add(ledger,
@@ -84,5 +84,5 @@ void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Setting
     if (model->terms & CK_TERM_GRAVITY)
         ck_ledger_add(ledger, {"gravity", gravity, "m/s2", "m_gravity", gravity, "g", CK_EXACT});
     if (model->terms & CK_TERM_FORCE)
-        ck_ledger_add(ledger, {"force", force, "N", "Node::m_f", force, "F before each step", CK_EXACT});
+        ck_ledger_add(ledger, {"force", force, "N", force_parameter, force, "F", CK_EXACT});
 }

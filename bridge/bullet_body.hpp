@@ -30,7 +30,8 @@ void ck_bullet_body_read(const ck_BulletBody &body, double *position, double *ve
 bool ck_bullet_body_is_finite(const ck_BulletBody &body);
 
 // Adds the rows that both worlds fill alike: time step, mass, gravity, force.
-void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used);
+// force_parameter is where the world takes the force.
+void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter);
 
 extern "C" const char *ck_bullet_version(void);
 

@@ -52,7 +52,7 @@ struct DeformableState {
 void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = ck_Settings{wanted->substeps, wanted->iterations ? wanted->iterations : 1, 0};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, 1.0 / 240);
-    ck_bullet_ledger(ledger, model, *used);
+    ck_bullet_ledger(ledger, model, *used, "btDeformableLagrangianForce");
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
         const ck_Spring *spring = ck_model_spring_of_kind(model, static_cast<ck_SpringKind>(kind));
         if (spring)

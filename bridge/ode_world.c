@@ -66,10 +66,11 @@ static void translate_springs(const ck_Model *model, double h, ck_Ledger *ledger
 }
 
 // Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, and at
-// most 1/120 s; for QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9 of a spring's error.
+// most 1/120 s and a tenth of drag's time; for QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9
+// of a spring's error.
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                       bool quick) {
-    double limit = fmin(1.0 / 120, ck_stability_transverse_time(model));
+    double limit = fmin(fmin(1.0 / 120, ck_stability_transverse_time(model)), ck_stability_drag_time(model, 0.1));
     double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
     if (quick && rate > 0) limit = fmin(limit, sqrt(10 / rate));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
@@ -87,7 +88,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                              ck_length(model->force), "F before each step", CK_EXACT});
     if (model->terms & CK_TERM_DRAG)
         ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "dBodySetLinearDamping", model->drag * h,
-                                             "h*drag, threshold 0", CK_EXACT});
+                                             "h*drag, threshold 0: first order", CK_APPROXIMATE});
     // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
     translate_springs(model, h, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
 }

@@ -57,7 +57,8 @@ void ck_native_read(const void *state, double *position, double *velocity) {
     memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
 }
 
-void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula) {
+void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula,
+                      ck_Match drag_match) {
     double dt = model->step / used->substeps;
     ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "dt", dt, "step / substeps", CK_EXACT});
     ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "inverse_mass", 1 / model->mass[0],
@@ -69,7 +70,8 @@ void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Setting
         ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "acceleration",
                                              ck_length(model->force) / model->mass[0], "F/m", CK_EXACT});
     if (model->terms & CK_TERM_DRAG)
-        ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "drag", model->drag, drag_formula, CK_EXACT});
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){"drag", model->drag, "1/s", "drag", model->drag, drag_formula, drag_match});
 }
 
 void ck_native_ledger_springs(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula,

@@ -29,8 +29,9 @@ void ck_native_destroy(void *state);
 // Copies position and velocity out, for engines whose velocity stands at the time of their positions.
 void ck_native_read(const void *state, double *position, double *velocity);
 
-// Adds the rows that the native engines meet exactly: mass, gravity, force, drag, time step.
-void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula);
+// Adds the rows that the native engines meet exactly: mass, gravity, force, time step; and drag.
+void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula,
+                      ck_Match drag_match);
 
 // Adds a row for each kind of spring there is, whose stiffness the engine takes as it is or not at all.
 void ck_native_ledger_springs(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula,

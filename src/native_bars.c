@@ -56,12 +56,19 @@ static void substep(ck_Native *native) {
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
-    if (!used->substeps) used->substeps = ck_stability_substeps(model, ck_stability_bar_time(model, used->iterations));
-    ck_native_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)");
+    if (!used->substeps)
+        used->substeps = ck_stability_substeps(
+            model, fmin(ck_stability_drag_time(model, 0.25), ck_stability_bar_time(model, used->iterations)));
+    ck_native_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)", CK_EXACT);
     bool rigid = model->terms & CK_TERM_RIGID;
-    ck_native_ledger_springs(ledger, model, "rest",
-                             rigid ? "bar of fixed length" : "a bar does not stretch: k is not modelled",
-                             rigid ? CK_EXACT : CK_IMPOSSIBLE);
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (spring)
+            ck_ledger_add(ledger,
+                          (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "bar length", spring->rest,
+                                         rigid ? "bar of fixed length" : "a bar does not stretch: k is not modelled",
+                                         rigid ? CK_EXACT : CK_IMPOSSIBLE});
+    }
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "none", 0,
                                              "a bar does not stretch: c is not modelled", CK_IMPOSSIBLE});

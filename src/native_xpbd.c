@@ -53,10 +53,11 @@ static void substep(ck_Native *native) {
 }
 
 // Time step: with 1/k_eff = 1/k + w·(dt² + c·dt/k)/iterations, where damping softens too, a spring is at most 0.5 % too
-// soft: k·dt² + c·dt ≤ 0.005·iterations/w.
+// soft: k·dt² + c·dt ≤ 0.005·iterations/w. Drag is first order: at most 2 % of a speed a substep.
 static double time_step_limit(const ck_Model *model, uint32_t iterations) {
-    if (model->terms & CK_TERM_RIGID) return ck_stability_bar_time(model, iterations);
-    double limit = INFINITY, allowed = 0.005 * iterations / ck_stability_lightness(model);
+    if (model->terms & CK_TERM_RIGID)
+        return fmin(ck_stability_drag_time(model, 0.02), ck_stability_bar_time(model, iterations));
+    double limit = ck_stability_drag_time(model, 0.02), allowed = 0.005 * iterations / ck_stability_lightness(model);
     for (int i = 0; i < model->spring_count; i++) {
         double k = model->springs[i].stiffness, c = model->springs[i].damping;
         limit = fmin(limit, 2 * allowed / (c + sqrt(c * c + 4 * k * allowed)));
@@ -68,7 +69,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     *used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
     double dt = model->step / used->substeps;
-    ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps");
+    ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
         const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
         if (!spring) continue;

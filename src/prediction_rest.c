@@ -75,7 +75,7 @@ bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settin
     bool found = moved && sweeping.springs;
     if (found) memcpy(sweeping.springs, model->springs, sizeof *sweeping.springs * (size_t)model->spring_count);
     if (found) memcpy(position, truth, bytes);
-    for (int round = 0; round < ROUNDS && found && change > 1e-12 * model->size; round++) {
+    for (int round = 0; round < ROUNDS && found && change > 1e-11 * model->size; round++) {
         ck_Equilibrium rest = {0};
         found = apply_sweep(&sweeping, model, method, dt, eased, position, moved) &&
                 !ck_equilibrium_solve(&rest, &sweeping, position, NULL);

@@ -92,9 +92,11 @@ static double distance(const ck_Model *model, const ck_Trajectory *one, const ck
 }
 
 static double disagreement(const ck_ReferencePath *path, const ck_Model *model) {
-    if (path->fine.frame_count <= path->horizon || path->coarse.frame_count <= path->horizon) return INFINITY;
+    // the first frame counts even beyond the horizon: paths always agree at the start
+    int last = path->horizon > 1 ? path->horizon : 1;
+    if (path->fine.frame_count <= last || path->coarse.frame_count <= last) return INFINITY;
     double largest = 0;
-    for (int frame = 0; frame <= path->horizon; frame++)
+    for (int frame = 1; frame <= last; frame++)
         largest = fmax(largest, distance(model, &path->fine, &path->coarse, frame));
     return largest;
 }
@@ -123,6 +125,8 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
     ck_Status status = ck_stability_frequency(model, &frequency);
     // the method is stable to 2.78/ω; it starts at a quarter of that
     path->substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, 0.7 / fmax(frequency, 1e-300)));
+    if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
+        return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g steps", model->name, MAX_STEPS);
     if (!status) status = ck_reference_integrate(&path->fine, model, path->substeps, 0, error);
     path->agreement = INFINITY;
     while (!status && path->agreement > AGREEMENT) {
@@ -137,6 +141,8 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
         if (!status) status = find_horizon(path, model, error);
         path->agreement = disagreement(path, model);
     }
+    if (!status && path->horizon < 1)
+        return ck_fail(error, CK_REFUSED, "%s: two references part within the first frame", model->name);
     return status;
 }
 

@@ -95,6 +95,10 @@ double ck_stability_bar_time(const ck_Model *model, uint32_t iterations) {
     return limit;
 }
 
+double ck_stability_drag_time(const ck_Model *model, double share) {
+    return model->drag > 0 ? share / model->drag : INFINITY;
+}
+
 uint32_t ck_stability_substeps(const ck_Model *model, double limit) {
     // a hair of slack, so that a limit of exactly one frame asks for one substep
     double count = ceil(model->step / limit * (1 - 1e-12));

@@ -34,6 +34,9 @@ double ck_stability_lightness(const ck_Model *model);
 // load·w·dt²/iterations; at most 1/240 s. Substeps act squared where iterations act once.
 double ck_stability_bar_time(const ck_Model *model, uint32_t iterations);
 
+// The longest step, in s, in which drag takes no more than share of a speed; INFINITY without drag.
+double ck_stability_drag_time(const ck_Model *model, double share);
+
 // How many equal substeps of at most limit seconds make one frame: at least 1, at most 100000.
 uint32_t ck_stability_substeps(const ck_Model *model, double limit);
 

@@ -20,6 +20,12 @@ ck_Status ck_truth_need(bool met, const ck_Model *model, ck_Error *error, const 
 // True for particles joined one after the other by one spring each, and no others: a rope, or a network of such bars.
 bool ck_truth_is_chain(const ck_Model *model);
 
+// True for a chain whose springs are alike and start in one straight line.
+bool ck_truth_is_even_chain(const ck_Model *model);
+
+// True where no spring is strained at the start.
+bool ck_truth_starts_at_rest_lengths(const ck_Model *model);
+
 // True without pins and colliders, and with springs that start at rest: nothing but field and drag moves it.
 bool ck_truth_is_falling(const ck_Model *model);
 
