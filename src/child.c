@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+volatile sig_atomic_t ck_child_interrupted;
+
 ck_Limits ck_limits_default(void) {
     return (ck_Limits){.seconds = 900, .memory_bytes = (size_t)4 << 30};
 }
@@ -49,6 +51,8 @@ static _Noreturn void be_child(void (*work)(void *), void *context, int output, 
     prctl(PR_SET_NAME, "clothcheck-run");
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
     // a crash is a result here, not worth a core file
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
     work(context);
@@ -63,6 +67,7 @@ static ck_ChildEnd watch(pid_t child, int alive, const ck_Limits *limits) {
     for (;;) {
         struct pollfd ready = {.fd = alive, .events = POLLIN};
         if (poll(&ready, 1, 20) > 0) return CK_CHILD_DONE;
+        if (ck_child_interrupted) return CK_CHILD_ABORTED;
         if (limits->memory_bytes && resident_bytes(child) > limits->memory_bytes) return CK_CHILD_NO_MEMORY;
         if (now() > end) return CK_CHILD_TIMED_OUT;
     }
@@ -123,6 +128,7 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
     describe(result, wait_status, limits, output);
+    if (ck_child_interrupted) status = ck_fail(error, CK_IO, "interrupted; nothing was written");
 cleanup:
     if (output >= 0) close(output);
     if (alive[0] >= 0) close(alive[0]);

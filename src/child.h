@@ -5,6 +5,7 @@
 
 #include "status.h"
 
+#include <signal.h>
 #include <stddef.h>
 
 typedef struct ck_Limits {
@@ -22,6 +23,9 @@ typedef struct ck_ChildResult {
     char reason[256];      // empty when done; else the signal or limit, and the last line the child printed
     size_t peak_rss_bytes; // of the child, with what it inherited
 } ck_ChildResult;
+
+// Set by a signal handler: the current child is ended, and ck_child_run fails with CK_IO from then on.
+extern volatile sig_atomic_t ck_child_interrupted;
 
 // Forks, runs work(context) in the child and waits for it. What the child prints does not reach the caller's streams.
 // Results travel through memory that context shares with the child.

@@ -3,6 +3,7 @@
 #include "tables.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,11 @@
 int ck_command_fail(ck_Status status, const ck_Error *error) {
     fprintf(stderr, "clothcheck: %s\n", error->message);
     return status == CK_BAD_INPUT ? CK_EXIT_USAGE : CK_EXIT_FAILED;
+}
+
+static void interrupt(int signal_number) {
+    (void)signal_number;
+    ck_child_interrupted = 1;
 }
 
 static void show_progress(const char *scene, const char *engine, const char *doing) {
@@ -31,8 +37,11 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
                          void (*show)(const ck_Comparison *), ck_Error *error) {
     ck_CompareOptions options = arguments->options;
     bool terminal = isatty(STDERR_FILENO);
+    // whole files or none: an interrupted comparison takes back what it began
+    signal(SIGINT, interrupt);
+    signal(SIGTERM, interrupt);
     if (terminal) options.progress = show_progress;
-    char *cache = arguments->out ? ck_path_join(arguments->out, "truths", "") : NULL;
+    char *cache = arguments->out ? ck_path_join(arguments->out, "truths") : NULL;
     options.cache = cache;
     ck_Status status = CK_OK;
     for (int i = 0; i < arguments->scene_count && !status; i++) {

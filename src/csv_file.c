@@ -13,7 +13,7 @@
 
 ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const char *name, const char *const *columns,
                       ck_Error *error) {
-    *csv = (ck_Csv){.path = ck_path_join(directory, name, ""), .part = ck_path_join(directory, name, ".part")};
+    *csv = (ck_Csv){.path = ck_path_join(directory, name), .part = ck_path_part(directory, name)};
     if (!csv->path || !csv->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     csv->file = fopen(csv->part, "w");
     if (!csv->file) return ck_fail(error, CK_IO, "%s: %s", csv->part, strerror(errno));

@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,10 +32,46 @@ static ck_Status read_text(ck_Document *document, ck_Error *error) {
     return status;
 }
 
+// The deepest nesting that a scene has use for is 5.
+#define MAX_DEPTH 16
+
+// What would make a small file slow or ambiguous: deep nesting, aliases, and more than one document.
+static const char *objection(const yaml_event_t *event, int depth, int documents) {
+    if (depth > MAX_DEPTH) return "is nested too deep; a scene needs no more than a few levels";
+    if (event->type == YAML_ALIAS_EVENT) return "an alias is not supported; write the value out";
+    if (documents > 1) return "begins a second document; a scene file has one";
+    return NULL;
+}
+
+// Reads the events once before a tree is built of them.
+static ck_Status scan(const ck_Document *document, ck_Error *error) {
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
+    yaml_parser_set_input_string(&parser, document->text, document->length);
+    ck_Status status = CK_OK;
+    int depth = 0, documents = 0;
+    for (bool done = false; !done && !status;) {
+        yaml_event_t event;
+        if (!yaml_parser_parse(&parser, &event)) break; // the tree's parser will say why
+        depth += event.type == YAML_MAPPING_START_EVENT || event.type == YAML_SEQUENCE_START_EVENT;
+        depth -= event.type == YAML_MAPPING_END_EVENT || event.type == YAML_SEQUENCE_END_EVENT;
+        documents += event.type == YAML_DOCUMENT_START_EVENT;
+        const char *wrong = objection(&event, depth, documents);
+        if (wrong)
+            status = ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: %s", document->path, event.start_mark.line + 1,
+                             event.start_mark.column + 1, wrong);
+        done = event.type == YAML_STREAM_END_EVENT;
+        yaml_event_delete(&event);
+    }
+    yaml_parser_delete(&parser);
+    return status;
+}
+
 ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error) {
     *document = (ck_Document){.path = strdup(path)};
     if (!document->path) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
     ck_Status status = read_text(document, error);
+    if (!status) status = scan(document, error);
     if (status) return status;
 
     yaml_parser_t parser;

@@ -1,7 +1,10 @@
 #include "command.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const ck_Command commands[] = {
     {"list", "", "engines, scenes, metrics and truths", ck_command_list},
@@ -20,7 +23,15 @@ static void print_help(FILE *out) {
                  "wrong usage or input.\n");
 }
 
-int main(int argc, char **argv) {
+// A closed standard stream would lend its number to the first file that is written.
+static void open_streams(void) {
+    int file;
+    do file = open("/dev/null", O_RDWR);
+    while (file >= 0 && file <= STDERR_FILENO);
+    if (file >= 0) close(file);
+}
+
+static int run(int argc, char **argv) {
     if (argc > 1 && !strcmp(argv[1], "--version")) {
         printf("clothcheck %s\n", CK_VERSION);
         return CK_EXIT_OK;
@@ -34,4 +45,12 @@ int main(int argc, char **argv) {
     if (argc > 1) fprintf(stderr, "clothcheck: there is no command %s\n\n", argv[1]);
     print_help(stderr);
     return CK_EXIT_USAGE;
+}
+
+int main(int argc, char **argv) {
+    open_streams();
+    int result = run(argc, argv);
+    if (!fflush(stdout) && !ferror(stdout)) return result;
+    fprintf(stderr, "clothcheck: what was printed did not reach its file: %s\n", strerror(errno));
+    return result ? result : CK_EXIT_FAILED;
 }

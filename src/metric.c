@@ -14,7 +14,7 @@ static const double *reference_position(const ck_Reference *reference, int frame
 
 // The direction of fall, a unit vector. False without gravity and force.
 static bool fall_direction(const ck_Model *model, double *down) {
-    ck_model_field(model, 0, down);
+    ck_model_mean_field(model, down);
     double length = ck_length(down);
     if (!(length > 0)) return false;
     for (int axis = 0; axis < 3; axis++) down[axis] /= length;
@@ -122,7 +122,9 @@ static double energy_drift_over(const ck_Model *model, const ck_Trajectory *traj
         gained = fmax(gained, energy.kinetic + energy.elastic + energy.field - total);
         drop = fmax(drop, -energy.field);
     }
-    double scale = fmax(drop, total);
+    // below the energy of a millionth of its size per second there is only rounding
+    double rounding = 1e-12 * ck_model_free_mass(model) * model->size * model->size;
+    double scale = fmax(rounding, fmax(drop, total));
     return scale > 0 ? gained / scale : NAN;
 }
 
@@ -135,12 +137,13 @@ static double speed_rms(const ck_Model *model, const ck_Trajectory *trajectory, 
 
 double ck_metric_still_speed(const ck_Model *model) {
     double down[3] = {0}, start = 0;
-    ck_model_field(model, 0, down);
+    ck_model_mean_field(model, down);
     for (int i = 0; i < model->particle_count; i++) start = fmax(start, ck_length(model->velocity + 3 * i));
-    return 1e-3 * fmax(sqrt(ck_length(down) * model->size), start);
+    return fmax(1e-9 * model->size, 1e-3 * fmax(sqrt(ck_length(down) * model->size), start));
 }
 
-// The first time after which the rms speed stays below ck_metric_still_speed; none if it does not.
+// The first time after which the rms speed stays below ck_metric_still_speed; none if that is not for the last
+// twentieth of the run: at a turning point a body is still for a frame.
 static double settle_time_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
     double still = ck_metric_still_speed(model);
@@ -148,14 +151,14 @@ static double settle_time_over(const ck_Model *model, const ck_Trajectory *traje
     if (!(speed_rms(model, trajectory, frame) < still)) return NAN;
     // a body that starts at rest has not settled before it moved
     while (frame > 0 && speed_rms(model, trajectory, frame - 1) < still) frame--;
-    return frame * trajectory->step;
+    return last_frame(trajectory) - frame >= (last_frame(trajectory) + 19) / 20 ? frame * trajectory->step : NAN;
 }
 
 // rms acceleration over the last tenth of the run, / that of the field. By differences of velocity, frame to frame.
 static double jitter_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
     double field[3], sum = 0;
-    ck_model_field(model, 0, field);
+    ck_model_mean_field(model, field);
     int last = last_frame(trajectory), first = last - (last + 9) / 10;
     if (!(ck_length(field) > 0) || !model->pin_count) return NAN;
     for (int frame = first; frame < last; frame++)
@@ -264,14 +267,16 @@ static const ck_Metric metrics[] = {
     {"stretch_rms", "1", "Root mean square spring strain", CK_TRUTH_OF_STATE, .at = stretch_rms_at},
     {"position_rms", "1", "Root mean square distance to the truth / size", CK_TRUTH_ZERO, position_rms_at,
      position_rms_over, position_rms_between},
-    {"energy_drift", "1", "Gained energy / largest potential drop", CK_TRUTH_ZERO, .over = energy_drift_over},
+    {"energy_drift", "1", "Gained energy / largest potential drop or start energy", CK_TRUTH_ZERO,
+     .over = energy_drift_over},
     {"settle_time", "s", "Time after which the body stays still", CK_TRUTH_NONE, .over = settle_time_over},
     {"sag_path", "1", "Root mean square difference of sag(t) to the truth's, whole run", CK_TRUTH_ZERO,
      .over = sag_path_over},
     {"energy_path", "1", "Root mean square difference of energy(t) to the truth's / what it turns over", CK_TRUTH_ZERO,
      .over = energy_path_over},
     {"period", "s", "Time of one swing of the centre of mass", CK_TRUTH_OF_STATE, .over = period_over},
-    {"jitter", "1", "Root mean square acceleration at the end / g", CK_TRUTH_ZERO_STILL, .over = jitter_over},
+    {"jitter", "1", "Root mean square acceleration at the end / that of the field", CK_TRUTH_ZERO_STILL,
+     .over = jitter_over},
 };
 
 int ck_metric_count(void) {

@@ -52,7 +52,8 @@ double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_
 double ck_metric_deviation(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *one,
                            const ck_Trajectory *other, const ck_Reference *reference);
 
-// The speed, in m/s, below which a body counts as settled: 0.1 % of √(field·size), or of its start speed without field.
+// The speed, in m/s, below which a body counts as settled: 0.1 % of √(field·size), or of its start speed without
+// field; at least a billionth of its size per second, below which there is only rounding.
 double ck_metric_still_speed(const ck_Model *model);
 
 #endif

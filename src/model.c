@@ -4,6 +4,7 @@
 #include "scene.h"
 #include "vector.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,9 +38,10 @@ static ck_Status copy_labels(ck_Model *model, const ck_SceneFile *file) {
 
 static ck_Status set_time(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneTime *time = &scene->file->time;
-    double frames = floor(time->duration / time->step + 0.5);
-    if (frames < 1 || frames > 1e6)
-        return ck_scene_fail(scene, "time", error, "duration / step is %g frames; it must be 1 to 1000000",
+    double ratio = time->duration / time->step, frames = floor(ratio + 0.5);
+    if (frames < 1 || frames > 1e6 || fabs(ratio - frames) > 1e-6 * frames)
+        return ck_scene_fail(scene, "time", error,
+                             "duration / step is %g frames; it must be a whole number from 1 to 1000000",
                              time->duration / time->step);
     model->duration = time->duration;
     model->step = time->step;
@@ -132,6 +134,20 @@ static void set_fields(ck_Model *model, const ck_SceneFile *file) {
         if (file->velocity && !model->pinned[i]) memcpy(model->velocity + 3 * i, file->velocity, 3 * sizeof(double));
 }
 
+// Numbers that are each fine may still make a body that is not.
+static ck_Status check_finite(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    bool fine = isfinite(model->size * model->size) && isfinite(model->size * ck_length(model->gravity));
+    for (int i = 0; i < model->particle_count; i++) {
+        fine &= isfinite(ck_dot(model->position + 3 * i, model->position + 3 * i)) && isfinite(1 / model->mass[i]);
+        fine &= isfinite(ck_dot(model->velocity + 3 * i, model->velocity + 3 * i)) &&
+                isfinite(ck_length(model->force) / model->mass[i]);
+    }
+    if (fine) return CK_OK;
+    return ck_scene_fail(
+        scene, "", error,
+        "its numbers are too large or too small to be computed with; use metres, kilograms and seconds");
+}
+
 static unsigned terms_in_use(const ck_Model *model, const ck_SceneFile *file) {
     unsigned terms = 0;
     if (model->spring_count) terms |= CK_TERM_SPRINGS;
@@ -161,7 +177,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     ck_model_add_noise(model, scene);
     set_fields(model, scene->file);
     model->terms = terms_in_use(model, scene->file);
-    return CK_OK;
+    return check_finite(model, scene, error);
 }
 
 void ck_model_free(ck_Model *model) {
@@ -193,12 +209,29 @@ double ck_model_free_mass(const ck_Model *model) {
 }
 
 const ck_Spring *ck_model_spring_of_kind(const ck_Model *model, ck_SpringKind kind) {
-    for (int i = 0; i < model->spring_count; i++)
-        if (model->springs[i].kind == kind) return &model->springs[i];
-    return NULL;
+    const ck_Spring *found = NULL;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        if (spring->kind != kind) continue;
+        if (!model->pinned[spring->a] && !model->pinned[spring->b]) return spring;
+        if (!found) found = spring;
+    }
+    return found;
 }
 
 void ck_model_field(const ck_Model *model, int particle, double *acceleration) {
-    for (int axis = 0; axis < 3; axis++)
-        acceleration[axis] = model->gravity[axis] + model->force[axis] / model->mass[particle];
+    double push[3];
+    for (int axis = 0; axis < 3; axis++) push[axis] = model->force[axis] / model->mass[particle];
+    for (int axis = 0; axis < 3; axis++) acceleration[axis] = model->gravity[axis] + push[axis];
+    // a force that carries the weight leaves nothing, not the rounding of it
+    if (ck_length(acceleration) <= 1e-14 * ck_length(push)) memset(acceleration, 0, 3 * sizeof(double));
+}
+
+void ck_model_mean_field(const ck_Model *model, double *acceleration) {
+    double mass = ck_model_free_mass(model), field[3];
+    memset(acceleration, 0, 3 * sizeof(double));
+    for (int i = 0; i < model->particle_count; i++) {
+        ck_model_field(model, i, field);
+        if (!model->pinned[i]) ck_add_scaled(acceleration, model->mass[i] / mass, field);
+    }
 }

@@ -177,7 +177,7 @@ static ck_Status build_network(ck_Model *model, const ck_Scene *scene, ck_Error 
     return build_bars(model, scene, error);
 }
 
-// The unit vector along which noise moves particles: across the cloth, or across gravity for a rope or a network.
+// The unit vector along which noise moves particles: across the cloth or the rope; along z for a network.
 static void out_of_plane(double *normal, const ck_Model *model, const ck_SceneFile *file) {
     double across[3] = {1, 0, 0}, down[3] = {0, -1, 0};
     if (file->cloth && file->cloth->across) memcpy(across, file->cloth->across, sizeof across);

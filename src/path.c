@@ -2,20 +2,24 @@
 
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-char *ck_path_join(const char *directory, const char *name, const char *suffix) {
-    size_t size = strlen(directory) + strlen(name) + strlen(suffix) + 2;
-    char *path = malloc(size);
-    if (path) snprintf(path, size, "%s%s%s%s", directory, *name == '.' ? "" : "/", name, suffix);
-    return path;
+char *ck_path_join(const char *directory, const char *name) {
+    char *path;
+    return asprintf(&path, "%s/%s", directory, name) < 0 ? NULL : path;
+}
+
+char *ck_path_part(const char *directory, const char *name) {
+    char *path;
+    return asprintf(&path, "%s/%s.%d.part", directory, name, (int)getpid()) < 0 ? NULL : path;
 }
 
 int ck_path_make(const char *directory) {
     char path[4096];
-    if (snprintf(path, sizeof path, "%s", directory) >= (int)sizeof path) return errno = ENAMETOOLONG;
+    if (!*directory) return ENOENT;
+    if (snprintf(path, sizeof path, "%s", directory) >= (int)sizeof path) return ENAMETOOLONG;
     for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = 0;
         if (mkdir(path, 0777) && errno != EEXIST) return errno;

@@ -137,12 +137,16 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
                          const ck_Limits *limits, ck_Error *error) {
     *run = (ck_Run){.model = model, .engine = engine, .wanted = *wanted};
     if (is_unsupported(run)) return CK_OK;
-    ck_Status status = ck_trajectory_create(&run->trajectory, model, error);
-    if (status) return status;
+    ck_Error why = {0};
+    if (ck_trajectory_create(&run->trajectory, model, &why)) {
+        run->status = CK_RUN_OUT_OF_MEMORY;
+        snprintf(run->reason, sizeof run->reason, "%s", why.message);
+        return CK_OK;
+    }
     Report *report = ck_shared_allocate(sizeof *report);
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
-    status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count}, limits, error);
+    ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count}, limits, error);
     if (!status) conclude(run, report, &child);
     ck_shared_free(report, sizeof *report);
     return status;

@@ -43,15 +43,22 @@ static const cyaml_schema_field_t *find_field(const cyaml_schema_field_t *fields
     return NULL;
 }
 
+static bool is_path_of(const ck_RangeRule *rule, const char *path) {
+    if (*rule->path != '*') return !strcmp(rule->path, path);
+    size_t length = strlen(rule->path + 1), whole = strlen(path);
+    return whole >= length && !strcmp(path + whole - length, rule->path + 1);
+}
+
 static ck_Status check_range(const Check *check, yaml_node_t *node, double value, const char *path) {
     ck_Range range = CK_RANGE_FINITE;
     for (const ck_RangeRule *rule = ck_scene_ranges; rule->path; rule++)
-        if (!strcmp(rule->path, path)) range = rule->range;
+        if (is_path_of(rule, path)) range = rule->range;
     const char *wanted = NULL;
     if (!isfinite(value)) wanted = "a finite number";
     if (range == CK_RANGE_POSITIVE && !(value > 0)) wanted = "a number above 0";
     if (range == CK_RANGE_NOT_NEGATIVE && !(value >= 0)) wanted = "0 or a number above it";
     if (range == CK_RANGE_UNIT && !(value >= 0 && value <= 1)) wanted = "a number from 0 to 1";
+    if (range == CK_RANGE_SETTING && !(value >= 0 && value <= 1e6)) wanted = "a number from 0 to 1000000";
     if (!wanted) return CK_OK;
     return ck_document_fail(check->document, node, check->error, "%s is %s; it must be %s", path, scalar_text(node),
                             wanted);
@@ -89,6 +96,13 @@ static ck_Status check_text(const Check *check, yaml_node_t *node, const cyaml_s
     const char *text = scalar_text(node);
     if (!text)
         return ck_document_fail(check->document, node, check->error, "%s is %s; it must be text", path, kind_of(node));
+    if (strlen(text) != node->data.scalar.length)
+        return ck_document_fail(check->document, node, check->error, "%s has a zero byte; it must be text", path);
+    for (const char *letter = text; *letter && !strcmp(path, "name"); letter++)
+        if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.", *letter))
+            return ck_document_fail(
+                check->document, node, check->error,
+                "name has a letter that is not plain; it must be made of letters, digits, _, - and .");
     if (strlen(text) < schema->string.min || strlen(text) > schema->string.max)
         return ck_document_fail(check->document, node, check->error, "%s has %zu characters; it must have %u to %u",
                                 path, strlen(text), schema->string.min, schema->string.max);

@@ -33,6 +33,9 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"release[].at", CK_RANGE_NOT_NEGATIVE},
     {"time.duration", CK_RANGE_POSITIVE},
     {"time.step", CK_RANGE_POSITIVE},
+    {"*.substeps", CK_RANGE_SETTING},
+    {"*.iterations", CK_RANGE_SETTING},
+    {"*.relaxation", CK_RANGE_SETTING},
     {NULL, CK_RANGE_FINITE},
 };
 

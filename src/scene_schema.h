@@ -9,11 +9,12 @@ typedef enum ck_Range {
     CK_RANGE_FINITE,
     CK_RANGE_POSITIVE,
     CK_RANGE_NOT_NEGATIVE,
-    CK_RANGE_UNIT, // 0 … 1
+    CK_RANGE_UNIT,    // 0 … 1
+    CK_RANGE_SETTING, // 0 … 1000000
 } ck_Range;
 
 typedef struct ck_RangeRule {
-    const char *path; // as in "network.nodes[].mass"
+    const char *path; // as in "network.nodes[].mass"; one that begins with a star stands for any path that ends like it
     ck_Range range;
 } ck_RangeRule;
 

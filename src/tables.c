@@ -41,7 +41,7 @@ ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *err
 
 static size_t add_setting(char *out, size_t size, size_t used, const char *engine, const char *key, double value) {
     if (!(value > 0) || used >= size) return used;
-    return used + (size_t)snprintf(out + used, size - used, " --set %s.%s=%g", engine, key, value);
+    return used + (size_t)snprintf(out + used, size - used, " --set %s.%s=%.17g", engine, key, value);
 }
 
 // The command that repeats one run.

@@ -75,14 +75,14 @@ static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *m
     return value == header->data && fgetc(file) == EOF;
 }
 
-static char *file_of(const ck_Model *model, const char *directory) {
-    char name[40];
-    snprintf(name, sizeof name, "%016llx.truth", (unsigned long long)ck_truth_cache_hash(model));
-    return ck_path_join(directory, name, "");
+static void name_of(char *name, size_t size, const ck_Model *model) {
+    snprintf(name, size, "%016llx.truth", (unsigned long long)ck_truth_cache_hash(model));
 }
 
 bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *directory) {
-    char *path = file_of(model, directory);
+    char name[40];
+    name_of(name, sizeof name, model);
+    char *path = ck_path_join(directory, name);
     FILE *file = path ? fopen(path, "rb") : NULL;
     free(path);
     if (!file) return false;
@@ -102,8 +102,10 @@ bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *dir
 }
 
 ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, const char *directory) {
-    char *path = file_of(model, directory), *part = path ? ck_path_join(path, ".part", "") : NULL;
-    FILE *file = part && !ck_path_make(directory) ? fopen(part, "wb") : NULL;
+    char name[40];
+    name_of(name, sizeof name, model);
+    char *path = ck_path_join(directory, name), *part = ck_path_part(directory, name);
+    FILE *file = path && part && !ck_path_make(directory) ? fopen(part, "wb") : NULL;
     Header header = {.format = FORMAT,
                      .model = ck_truth_cache_hash(model),
                      .data = HASH_START,
