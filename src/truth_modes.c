@@ -89,8 +89,9 @@ ck_Status ck_truth_longitudinal_modes(const ck_Model *model, double time, double
                 has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) && velocity_along(model) > 1 - 1e-12 &&
                 model->particle_count <= MAX_MODES && ck_truth_starts_at_rest_lengths(model) && is_gentle(model);
     ck_Status status = ck_truth_need(fits, model, error,
-                                     "a rope of springs and equal masses, pinned at its first particle, thrown along "
-                                     "itself, and no other force than drag");
+                                     "a straight rope of at most 1000 equal springs and masses, pinned at its first "
+                                     "particle, thrown along itself so gently that no spring turns over, and no other "
+                                     "force than drag");
     if (status) return status;
     const int n = model->particle_count - 1;
     const ck_Spring *spring = &model->springs[0];
@@ -120,9 +121,9 @@ ck_Status ck_truth_taut_string(const ck_Model *model, double time, double *posit
     bool fits = ck_truth_is_even_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] &&
                 !has_field(model) && has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) &&
                 velocity_along(model) < 1e-12 && string_tension(model) > 0;
-    ck_Status status = ck_truth_need(
-        fits, model, error,
-        "a rope with prestretch and equal masses, pinned at both ends, thrown sideways, and no other force than drag");
+    ck_Status status = ck_truth_need(fits, model, error,
+                                     "a straight rope with prestretch, equal springs and masses, pinned at both ends, "
+                                     "thrown sideways, and no other force than drag");
     if (status) return status;
     start_from(model, position, velocity);
     for (int j = 1; j < last; j++) {
@@ -188,9 +189,10 @@ ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *pos
         ck_subtract(along, model->position + 3, model->position);
         fits = ck_dot(along, model->gravity) > (1 - 1e-12) * ck_length(along) * g;
     }
-    ck_Status status = ck_truth_need(fits, model, error,
-                                     "a rope of at most 61 equal masses, hanging straight from its first particle in "
-                                     "gravity, thrown sideways, and no other force than drag");
+    ck_Status status = ck_truth_need(
+        fits, model, error,
+        "a rope of at most 61 equal masses and springs at rest length, hanging straight from its first particle in "
+        "gravity, thrown sideways, and no other force than drag");
     if (status) return status;
     const int n = model->particle_count - 1;
     start_from(model, position, velocity);

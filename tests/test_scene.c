@@ -85,7 +85,7 @@ static const struct {
     {"numbers beyond computing", "name: r\nrope: {particles: 3, spacing: 1.0e+200, mass: 1}\n" TIME,
      ":1:1:", "too large"},
     {"more iterations than an int", ROPE TIME "settings: {bullet-implicit: {iterations: 4294967295}}\n",
-     ":5:41:", "must be a number from 0 to 1000000"},
+     ":5:42:", "must be a number from 0 to 1000000"},
     {"negative relaxation", ROPE TIME "settings: {ode-quick: {relaxation: -1}}\n", ":5:36:", "from 0 to 1000000"},
     {"name with a slash", "name: ../r\nrope: {particles: 3, spacing: 1, mass: 1}\n" TIME, ":1:7:", "made of letters"},
     {"zero byte", "name: \"a\\0b\"\nrope: {particles: 3, spacing: 1, mass: 1}\n" TIME, ":1:7:", "zero byte"},
