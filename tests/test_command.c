@@ -148,6 +148,30 @@ static void test_comparison_repeats(void **state) {
     assert_int_equal(glob(pattern, 0, NULL, &left), GLOB_NOMATCH);
 }
 
+// Interrupted in the middle of a long run: no file is left, neither whole nor begun, and no solver goes on.
+static void test_interrupt(void **state) {
+    (void)state;
+    char command[500], pattern[100];
+    glob_t left;
+    snprintf(command, sizeof command,
+             "cd %s/.. && timeout -s INT 2 %s compare oscillator cloth_two_corners --engine ode-direct --out %s/cut "
+             ">/dev/null 2>&1",
+             SCENE_DIRECTORY, PROGRAM, directory);
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 124); // timeout's own word for having sent the signal
+    snprintf(pattern, sizeof pattern, "%s/cut/*.*", directory);
+    assert_int_equal(glob(pattern, 0, NULL, &left), GLOB_NOMATCH);
+}
+
+static void test_full_disk(void **state) {
+    (void)state;
+    char command[500];
+    snprintf(command, sizeof command, "cd %s/.. && %s list >/dev/full 2>/dev/null", SCENE_DIRECTORY, PROGRAM);
+    int status = system(command);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
@@ -155,6 +179,8 @@ int main(void) {
         cmocka_unit_test(test_two_scenes_of_one_name),
         cmocka_unit_test(test_unwritable_output),
         cmocka_unit_test(test_comparison_repeats),
+        cmocka_unit_test(test_interrupt),
+        cmocka_unit_test(test_full_disk),
     };
     return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }
