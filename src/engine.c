@@ -2,6 +2,7 @@
 
 #include "engine_list.h"
 
+#include <math.h>
 #include <string.h>
 
 // Adding an engine is one file, one line here and one in engine_list.h.
@@ -9,6 +10,21 @@ static const ck_Engine *const engines[] = {
     &ck_native_verlet,   &ck_native_bars, &ck_native_xpbd, &ck_bullet_pbd,
     &ck_bullet_implicit, &ck_ode_quick,   &ck_ode_direct,  &ck_null_engine,
 };
+
+ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame) {
+    for (int i = 0; i < model->release_count && engine->release; i++)
+        for (int j = 0; j < model->releases[i].particle_count && model->releases[i].frame == frame; j++)
+            engine->release(state, model->releases[i].particles[j]);
+    return engine->step(state);
+}
+
+void ck_engine_read(const ck_Engine *engine, const void *state, const ck_Trajectory *trajectory, int frame) {
+    engine->read(state, ck_trajectory_position(trajectory, frame), ck_trajectory_velocity(trajectory, frame));
+    if (!trajectory->contact) return;
+    double *contact = trajectory->contact + 3 * (size_t)frame;
+    for (int axis = 0; axis < 3; axis++) contact[axis] = NAN;
+    if (engine->contact) engine->contact(state, contact);
+}
 
 int ck_engine_count(void) {
     return sizeof engines / sizeof *engines;

@@ -6,6 +6,7 @@
 #include "model.h"
 #include "settings.h"
 #include "status.h"
+#include "trajectory.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -40,12 +41,22 @@ typedef struct ck_Engine {
     // Errors: CK_REFUSED with a reason, CK_NO_MEMORY. *state is only set on success.
     ck_Status (*create)(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error);
-    // Advances by one frame (model->step).
+    // Advances by one frame (model->step). Callers use ck_engine_advance, which lets due pins go first.
     ck_StepResult (*step)(void *state);
     // Position and velocity at the same time, in the model's particle order: [3*n] m, [3*n] m/s.
     void (*read)(const void *state, double *position, double *velocity);
+    // Lets a pinned particle go, at rest. NULL where the engine cannot.
+    void (*release)(void *state, int particle);
+    // The mean force of all colliders on the body over the last frame, [3] N. NULL where the engine does not tell.
+    void (*contact)(const void *state, double *force);
     void (*destroy)(void *state);
 } ck_Engine;
+
+// Lets go the pins that are due at this frame, then advances by one. The first frame is 0.
+ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame);
+
+// Reads a frame: positions, velocities and, where there are colliders, their force; NaN where the engine does not tell.
+void ck_engine_read(const ck_Engine *engine, const void *state, const ck_Trajectory *trajectory, int frame);
 
 // The engine table, in the order of the reports.
 int ck_engine_count(void);

@@ -1,5 +1,6 @@
 #include "metric.h"
 
+#include "metric_contact.h"
 #include "vector.h"
 
 #include <string.h>
@@ -99,7 +100,7 @@ static Energy energy_at(const ck_Model *model, const ck_Trajectory *trajectory, 
     Energy energy = {0};
     for (int i = 0; i < model->particle_count; i++) {
         double field[3];
-        if (model->pinned[i]) continue;
+        // a pin neither moves nor falls, until it is let go
         ck_model_field(model, i, field);
         energy.kinetic += 0.5 * model->mass[i] * ck_dot(velocity + 3 * i, velocity + 3 * i);
         energy.field -= model->mass[i] * (ck_dot(field, position + 3 * i) - ck_dot(field, model->position + 3 * i));
@@ -277,6 +278,16 @@ static const ck_Metric metrics[] = {
     {"period", "s", "Time of one swing of the centre of mass", CK_TRUTH_OF_STATE, .over = period_over},
     {"jitter", "1", "Root mean square acceleration at the end / that of the field", CK_TRUTH_ZERO_STILL,
      .over = jitter_over},
+    {"penetration_max", "1", "Deepest a particle was inside a collider / spacing", CK_TRUTH_ZERO,
+     .at = ck_metric_penetration_at, .over = ck_metric_penetration_over},
+    {"rest_height", "1", "Smallest gap between a particle and a collider / spacing", CK_TRUTH_OF_STATE,
+     .at = ck_metric_height_at},
+    {"restitution", "1", "Speed after / before the first bounce off a plane", CK_TRUTH_OF_STATE,
+     .over = ck_metric_restitution_over},
+    {"friction", "1", "Coefficient that explains the way slid along a plane", CK_TRUTH_OF_STATE,
+     .over = ck_metric_friction_over},
+    {"contact_force", "1", "Force of the colliders at the end / weight", CK_TRUTH_ONE_STILL,
+     .over = ck_metric_contact_force_over},
 };
 
 int ck_metric_count(void) {
@@ -306,7 +317,10 @@ double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_
 }
 
 double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_Reference *reference) {
-    if (!reference->trajectory.frame_count || metric->truth == CK_TRUTH_NONE) return NAN;
+    if (metric->truth == CK_TRUTH_ONE_STILL) return reference->is_static ? 1 : NAN;
+    if (metric->truth == CK_TRUTH_NONE) return NAN;
+    if (!reference->trajectory.frame_count && (!reference->is_invariant || metric->truth == CK_TRUTH_OF_STATE))
+        return NAN;
     if (metric->truth == CK_TRUTH_OF_STATE && reference->is_static && !metric->at) return NAN;
     if (metric->truth == CK_TRUTH_OF_STATE) return ck_metric_value(metric, model, &reference->trajectory, reference);
     return metric->truth == CK_TRUTH_ZERO || reference->is_static ? 0 : NAN;

@@ -9,6 +9,7 @@
 typedef struct ck_Reference {
     ck_Trajectory trajectory; // frame_count 0: there is none
     bool is_static;
+    bool is_invariant; // nothing is known of the shape, only what holds at rest whatever it is
     int horizon; // the last frame up to which positions can be compared point by point; unused when static
 } ck_Reference;
 
@@ -17,6 +18,7 @@ typedef enum ck_MetricTruth {
     CK_TRUTH_OF_STATE,   // the same metric of the truth's own states
     CK_TRUTH_ZERO,       // 0 whenever there is any truth
     CK_TRUTH_ZERO_STILL, // 0 where the truth is at rest, else none
+    CK_TRUTH_ONE_STILL,  // 1 where the truth is at rest, else none
     CK_TRUTH_NONE,
 } ck_MetricTruth;
 

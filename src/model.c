@@ -73,6 +73,7 @@ static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t in
     const ck_SceneRelease *from = &scene->file->release[index];
     ck_Release *release = &model->releases[model->release_count++];
     release->at = from->at;
+    release->frame = (int)fmin(ceil(from->at / model->step * (1 - 1e-12)), model->frame_count);
     release->particles = malloc(sizeof *release->particles * (size_t)model->particle_count * from->pins_count);
     if (!release->particles) return CK_NO_MEMORY;
     for (uint32_t i = 0; i < from->pins_count; i++) {

@@ -31,6 +31,13 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
         ck_native_destroy(native);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
+    ck_Status status = ck_contact_create(&native->contact, model, native->dt, error);
+    native->origin = native->contact ? calloc(vectors, sizeof(double)) : native->start;
+    if (!native->origin && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (status) {
+        ck_native_destroy(native);
+        return status;
+    }
     memcpy(native->position, model->position, vectors * sizeof(double));
     memcpy(native->velocity, model->velocity, vectors * sizeof(double));
     for (int i = 0; i < model->particle_count; i++) native->inverse_mass[i] = ck_model_inverse_mass(model, i);
@@ -41,6 +48,8 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
 void ck_native_destroy(void *state) {
     ck_Native *native = state;
     if (!native) return;
+    if (native->contact) free(native->origin);
+    free(native->contact);
     free(native->position);
     free(native->velocity);
     free(native->start);
@@ -55,6 +64,58 @@ void ck_native_read(const void *state, double *position, double *velocity) {
     const ck_Native *native = state;
     memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
     memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
+}
+
+void ck_native_start_frame(ck_Native *native) {
+    if (native->contact) memset(native->contact->impulse, 0, sizeof native->contact->impulse);
+}
+
+void ck_native_release(void *state, int particle) {
+    ck_Native *native = state;
+    native->inverse_mass[particle] = 1 / native->model->mass[particle];
+}
+
+void ck_native_contact(const void *state, double *force) {
+    const ck_Native *native = state;
+    for (int axis = 0; axis < 3; axis++)
+        force[axis] = native->contact ? native->contact->impulse[axis] / native->model->step : 0;
+}
+
+void ck_native_move(ck_Native *native, int particle, const double *next, const double *field) {
+    double *x = native->position + 3 * particle, *origin = native->origin + 3 * particle, v[3];
+    memcpy(origin, native->start + 3 * particle, 3 * sizeof(double));
+    // the mean velocity stands in the middle of the substep: half of it earlier is the start
+    memcpy(v, next, sizeof v);
+    ck_add_scaled(v, -0.5 * native->dt, field);
+    if (!ck_contact_impacts(native->contact, x, v, field)) {
+        ck_add_scaled(x, native->dt, next);
+        return;
+    }
+    ck_contact_advance(native->contact, native->model->mass[particle], x, v, field);
+    // and the next one's mean velocity is this one's end velocity and half a substep more
+    ck_add_scaled(v, -0.5 * native->dt, field);
+    memcpy(origin, x, 3 * sizeof(double));
+    ck_add_scaled(origin, -native->dt, v);
+    memcpy(native->other_velocity + 3 * particle, v, sizeof v);
+    ck_add_scaled(native->other_velocity + 3 * particle, -native->dt, field);
+}
+
+void ck_native_project(ck_Native *native) {
+    for (int i = 0; i < native->model->particle_count && native->contact; i++)
+        if (native->inverse_mass[i] > 0)
+            ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i,
+                               native->position + 3 * i);
+}
+
+static void ledger_contact(ck_Ledger *ledger, const ck_Model *model) {
+    for (int i = 0; i < model->collider_count; i++) {
+        const ck_Collider *collider = &model->colliders[i];
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){"restitution", collider->restitution, "1", "impulse", collider->restitution,
+                                     "(1 + e)*v_n at the time of impact; 0 below 2*a_n*dt, which is rest", CK_EXACT});
+        ck_ledger_add(ledger, (ck_LedgerRow){"friction", collider->friction, "1", "impulse", collider->friction,
+                                             "Coulomb cone: at most mu*(1 + e)*v_n, mu*a_n at rest", CK_EXACT});
+    }
 }
 
 void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula,
@@ -72,6 +133,7 @@ void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Setting
     if (model->terms & CK_TERM_DRAG)
         ck_ledger_add(ledger,
                       (ck_LedgerRow){"drag", model->drag, "1/s", "drag", model->drag, drag_formula, drag_match});
+    ledger_contact(ledger, model);
 }
 
 void ck_native_ledger_springs(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula,

@@ -2,6 +2,7 @@
 #ifndef CK_NATIVE_H
 #define CK_NATIVE_H
 
+#include "contact.h"
 #include "engine.h"
 
 typedef struct ck_Native {
@@ -10,15 +11,18 @@ typedef struct ck_Native {
     uint32_t substeps, iterations;
     double *position, *velocity; // [3*n]
     double *start;               // [3*n] positions at the start of the substep
+    double *origin;              // [3*n] what a substep's velocity is measured from: start, but for impacts
     double *other_velocity;      // [3*n] predicted (Verlet), or of one substep earlier (bars)
     double *acceleration;        // [3*n]
     double *inverse_mass;        // [n]
     double *multiplier;          // [springs] of the constraints, kg·m (force·dt²)
+    ck_Contact *contact;         // NULL without colliders
 } ck_Native;
 
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
-    (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY)
+    (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |          \
+     CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
 
 const char *ck_native_version(void);
 
@@ -28,6 +32,22 @@ void ck_native_destroy(void *state);
 
 // Copies position and velocity out, for engines whose velocity stands at the time of their positions.
 void ck_native_read(const void *state, double *position, double *velocity);
+
+// Forgets the contact force of the frame before.
+void ck_native_start_frame(ck_Native *native);
+
+// Lets a pinned particle go, at rest.
+void ck_native_release(void *state, int particle);
+
+// The mean force of the colliders on the body over the last frame, [3] N.
+void ck_native_contact(const void *state, double *force);
+
+// For position-based methods: moves a particle by one substep at the mean velocity next of that substep, [3] m/s, or
+// over the impacts on its way, where field, [3] m/s², acts in between. Sets its origin.
+void ck_native_move(ck_Native *native, int particle, const double *next, const double *field);
+
+// Moves every particle that is inside a collider out of it, with friction. Nothing without colliders.
+void ck_native_project(ck_Native *native);
 
 // Adds the rows that the native engines meet exactly: mass, gravity, force, time step; and drag.
 void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula,

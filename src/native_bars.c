@@ -46,12 +46,25 @@ static void substep(ck_Native *native) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
         ck_model_field(model, i, field);
-        for (int axis = 3 * i; axis < 3 * i + 3; axis++)
-            native->position[axis] += dt * slow * (keep * native->velocity[axis] + dt * field[axis - 3 * i]);
+        const double *v = native->velocity + 3 * i;
+        if (native->contact) {
+            double next[3], change[3];
+            for (int axis = 0; axis < 3; axis++) {
+                next[axis] = slow * (keep * v[axis] + dt * field[axis]);
+                change[axis] = (next[axis] - v[axis]) / dt;
+            }
+            ck_native_move(native, i, next, change);
+        } else {
+            for (int axis = 0; axis < 3; axis++)
+                native->position[3 * i + axis] += dt * slow * (keep * v[axis] + dt * field[axis]);
+        }
     }
-    for (uint32_t i = 0; i < native->iterations; i++) sweep(native);
+    for (uint32_t i = 0; i < native->iterations; i++) {
+        sweep(native);
+        ck_native_project(native);
+    }
     for (int i = 0; i < 3 * model->particle_count; i++)
-        native->velocity[i] = (native->position[i] - native->start[i]) / dt;
+        native->velocity[i] = (native->position[i] - native->origin[i]) / dt;
 }
 
 // Sweeps: one a substep, as substeps act squared where sweeps act once; but four where bars outnumber the freedoms they
@@ -85,28 +98,34 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 }
 
 // Half a step back, v₋½ = v₀ − a·dt/2: else the whole path would be off by a·t·dt/2.
-static void start_leapfrog(ck_Native *native) {
-    for (int i = 0; i < native->model->particle_count; i++) {
-        if (native->inverse_mass[i] == 0) continue;
-        double field[3];
-        ck_model_field(native->model, i, field);
-        ck_add_scaled(field, -native->model->drag, native->velocity + 3 * i);
-        memcpy(native->other_velocity + 3 * i, native->velocity + 3 * i, 3 * sizeof(double));
-        ck_add_scaled(native->velocity + 3 * i, -0.5 * native->dt, field);
-        ck_add_scaled(native->other_velocity + 3 * i, -1.5 * native->dt, field);
-    }
+static void start_leapfrog(ck_Native *native, int particle) {
+    double field[3], *velocity = native->velocity + 3 * particle, *before = native->other_velocity + 3 * particle;
+    ck_model_field(native->model, particle, field);
+    ck_add_scaled(field, -native->model->drag, velocity);
+    if (native->contact) ck_contact_filter(native->contact, native->position + 3 * particle, velocity, field, field);
+    memcpy(before, velocity, 3 * sizeof(double));
+    ck_add_scaled(velocity, -0.5 * native->dt, field);
+    ck_add_scaled(before, -1.5 * native->dt, field);
+}
+
+static void release(void *state, int particle) {
+    ck_native_release(state, particle);
+    start_leapfrog(state, particle);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
     ck_Status status = ck_native_create((ck_Native **)state, model, used, error);
-    if (!status) start_leapfrog(*state);
+    const ck_Native *native = *state;
+    for (int i = 0; i < model->particle_count && !status; i++)
+        if (native->inverse_mass[i] > 0) start_leapfrog(*state, i);
     return status;
 }
 
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
+    ck_native_start_frame(native);
     for (uint32_t i = 0; i < native->substeps; i++) substep(native);
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
@@ -130,5 +149,7 @@ const ck_Engine ck_native_bars = {
     .create = create,
     .step = step,
     .read = read_state,
+    .release = release,
+    .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

@@ -34,10 +34,34 @@ static void accelerate(const ck_Native *native, double *acceleration) {
     }
 }
 
+// As substep, where every particle's motion under its acceleration is followed through contact: what is left of both
+// accelerations, by the state at the end, makes the correction.
+static void substep_with_contact(ck_Native *native) {
+    double *x = native->position, *v = native->velocity, *predicted = native->other_velocity, left[3];
+    for (int i = 0; i < native->model->particle_count; i++) {
+        double *a = native->acceleration + 3 * i;
+        if (native->inverse_mass[i] == 0) continue;
+        ck_contact_advance(native->contact, native->model->mass[i], x + 3 * i, v + 3 * i, a);
+        memcpy(predicted + 3 * i, v + 3 * i, 3 * sizeof(double));
+        ck_contact_filter(native->contact, x + 3 * i, v + 3 * i, a, left);
+        ck_add_scaled(v + 3 * i, -0.5 * native->dt, left);
+    }
+    accelerate(native, native->acceleration);
+    for (int i = 0; i < native->model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        ck_contact_filter(native->contact, x + 3 * i, predicted + 3 * i, native->acceleration + 3 * i, left);
+        ck_add_scaled(v + 3 * i, 0.5 * native->dt, left);
+    }
+}
+
 // x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  a' = a(x, v*);  v ← v + (a + a')·dt/2
 // With the velocity predicted, damping keeps the second order; with last step's velocity it would be first.
 // Source: Groot and Warren 1997, eq. 10 with λ = 1.
 static void substep(ck_Native *native) {
+    if (native->contact) {
+        substep_with_contact(native);
+        return;
+    }
     const double dt = native->dt;
     const int count = 3 * native->model->particle_count;
     double *position = native->position, *velocity = native->velocity, *predicted = native->other_velocity;
@@ -83,8 +107,17 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     return CK_OK;
 }
 
+// its acceleration is there from the start
+static void release(void *state, int particle) {
+    ck_Native *native = state;
+    ck_native_release(native, particle);
+    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
+    accelerate(native, native->acceleration);
+}
+
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
+    ck_native_start_frame(native);
     for (uint32_t i = 0; i < native->substeps; i++) substep(native);
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
@@ -100,5 +133,7 @@ const ck_Engine ck_native_verlet = {
     .create = create,
     .step = step,
     .read = ck_native_read,
+    .release = release,
+    .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

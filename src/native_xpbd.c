@@ -44,12 +44,22 @@ static void substep(ck_Native *native) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
         ck_model_field(model, i, field);
-        ck_add_scaled(native->position + 3 * i, dt, native->velocity + 3 * i);
-        ck_add_scaled(native->position + 3 * i, dt * dt, field);
+        if (native->contact) {
+            double next[3];
+            memcpy(next, native->velocity + 3 * i, sizeof next);
+            ck_add_scaled(next, dt, field);
+            ck_native_move(native, i, next, field);
+        } else {
+            ck_add_scaled(native->position + 3 * i, dt, native->velocity + 3 * i);
+            ck_add_scaled(native->position + 3 * i, dt * dt, field);
+        }
     }
-    for (uint32_t i = 0; i < native->iterations; i++) sweep(native);
+    for (uint32_t i = 0; i < native->iterations; i++) {
+        sweep(native);
+        ck_native_project(native);
+    }
     for (int i = 0; i < 3 * model->particle_count; i++)
-        native->velocity[i] = keep * (native->position[i] - native->start[i]) / dt;
+        native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
 }
 
 // Time step: with 1/k_eff = 1/k + w·(dt² + c·dt/k)/iterations, where damping softens too, a spring is at most 0.5 % too
@@ -92,6 +102,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
 
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
+    ck_native_start_frame(native);
     for (uint32_t i = 0; i < native->substeps; i++) substep(native);
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
@@ -107,5 +118,7 @@ const ck_Engine ck_native_xpbd = {
     .create = create,
     .step = step,
     .read = ck_native_read,
+    .release = ck_native_release,
+    .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

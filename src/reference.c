@@ -59,19 +59,34 @@ static void nudge_start(const ck_Model *model, double *position, double nudge) {
     }
 }
 
+static void let_go(const ck_Model *now, int frame) {
+    for (int i = 0; i < now->release_count; i++)
+        for (int j = 0; j < now->releases[i].particle_count && now->releases[i].frame == frame; j++)
+            now->pinned[now->releases[i].particles[j]] = false;
+}
+
 ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
                                  ck_Error *error) {
     ck_Status status = ck_trajectory_create(trajectory, model, error);
     if (status) return status;
     const size_t half = 3 * (size_t)model->particle_count, whole = 2 * half;
     double *memory = malloc(6 * whole * sizeof(double));
-    if (!memory) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    bool *pinned = malloc((size_t)model->particle_count * sizeof *pinned);
+    if (!memory || !pinned) {
+        free(memory);
+        free(pinned);
+        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    }
     double *y = memory, *stage = memory + whole, *k = memory + 2 * whole;
+    ck_Model now = *model;
+    now.pinned = pinned;
+    memcpy(pinned, model->pinned, (size_t)model->particle_count * sizeof *pinned);
     memcpy(y, model->position, half * sizeof(double));
     memcpy(y + half, model->velocity, half * sizeof(double));
     if (nudge > 0) nudge_start(model, y, nudge);
     for (int frame = 0; frame <= model->frame_count; frame++) {
-        for (int i = 0; frame && i < substeps; i++) runge_kutta(model, model->step / substeps, y, k, stage);
+        if (frame) let_go(&now, frame - 1);
+        for (int i = 0; frame && i < substeps; i++) runge_kutta(&now, model->step / substeps, y, k, stage);
         bool finite = true;
         for (size_t j = 0; j < whole; j++) finite &= isfinite(y[j]) != 0;
         if (!finite) break;
@@ -79,6 +94,7 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
         trajectory->frame_count = frame + 1;
     }
     free(memory);
+    free(pinned);
     return CK_OK;
 }
 
@@ -117,9 +133,9 @@ static ck_Status find_horizon(ck_ReferencePath *path, const ck_Model *model, ck_
 
 ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
     *path = (ck_ReferencePath){0};
-    unsigned beyond = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE;
+    unsigned beyond = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE;
     if (model->terms & beyond)
-        return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no rigid bars, colliders or releases",
+        return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no rigid bars or colliders",
                        model->name);
     double frequency;
     ck_Status status = ck_stability_frequency(model, &frequency);

@@ -28,7 +28,7 @@ typedef struct ck_ReferencePath {
 } ck_ReferencePath;
 
 // Halves the step until two paths agree to 1e-9 of the size up to the horizon.
-// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders or releases, or no affordable step agrees.
+// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars or colliders, or no affordable step agrees.
 // Free with ck_reference_path_free in any case.
 ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error);
 void ck_reference_path_free(ck_ReferencePath *path);

@@ -46,20 +46,17 @@ static void *create(const Job *job) {
 static void measure(void *context) {
     const Job *job = context;
     const ck_Engine *engine = job->run->engine;
-    const ck_Trajectory *trajectory = &job->run->trajectory;
     Report *report = job->report;
     void *state = create(job);
     if (report->status) return;
-    engine->read(state, ck_trajectory_position(trajectory, 0), ck_trajectory_velocity(trajectory, 0));
+    ck_engine_read(engine, state, &job->run->trajectory, 0);
     report->frame_count = 1;
     while (report->frame_count <= job->frames) {
         double start = thread_cpu();
-        report->step = engine->step(state);
+        report->step = ck_engine_advance(engine, state, job->run->model, report->frame_count - 1);
         report->cpu += thread_cpu() - start;
         if (report->step) break;
-        engine->read(state, ck_trajectory_position(trajectory, report->frame_count),
-                     ck_trajectory_velocity(trajectory, report->frame_count));
-        report->frame_count++;
+        ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
     }
     engine->destroy(state);
 }
@@ -71,13 +68,13 @@ static void time_frames(void *context) {
     // warm up on a world of its own: code and allocator, not this world's state
     void *state = create(job);
     if (report->status) return;
-    for (int i = 0; i < job->frames && i < 3; i++) engine->step(state);
+    for (int i = 0; i < job->frames && i < 3; i++) ck_engine_advance(engine, state, job->run->model, i);
     engine->destroy(state);
     state = create(job);
     if (report->status) return;
     for (int i = 0; i < job->frames; i++) {
         double start = thread_cpu();
-        report->step = engine->step(state);
+        report->step = ck_engine_advance(engine, state, job->run->model, i);
         double cpu = thread_cpu() - start;
         report->cpu += cpu;
         report->worst_step = fmax(report->worst_step, cpu);

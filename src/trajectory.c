@@ -2,21 +2,27 @@
 
 #include <sys/mman.h>
 
+// the states, then the contact forces
+static size_t mapped_bytes(const ck_Trajectory *trajectory) {
+    return trajectory->bytes + 3 * sizeof(double) * (size_t)trajectory->capacity;
+}
+
 ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model, ck_Error *error) {
     *trajectory = (ck_Trajectory){
         .particle_count = model->particle_count, .capacity = model->frame_count + 1, .step = model->step};
     trajectory->bytes = sizeof(double) * 6 * (size_t)model->particle_count * (size_t)trajectory->capacity;
     void *data =
-        mmap(NULL, trajectory->bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        mmap(NULL, mapped_bytes(trajectory), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (data == MAP_FAILED)
         return ck_fail(error, CK_NO_MEMORY, "%s: no memory for %d frames of %d particles", model->name,
                        trajectory->capacity, model->particle_count);
     trajectory->data = data;
+    if (model->collider_count) trajectory->contact = trajectory->data + trajectory->bytes / sizeof(double);
     return CK_OK;
 }
 
 void ck_trajectory_free(ck_Trajectory *trajectory) {
-    if (trajectory->data) munmap(trajectory->data, trajectory->bytes);
+    if (trajectory->data) munmap(trajectory->data, mapped_bytes(trajectory));
     *trajectory = (ck_Trajectory){0};
 }
 

@@ -7,13 +7,18 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct ck_Trajectory {
     int particle_count;
     int frame_count; // frames written, the start among them
     int capacity;
     double step;  // s between frames
     double *data; // [capacity][2][3*n] positions, then velocities; shared with child processes
-    size_t bytes;
+    size_t bytes;    // of data
+    double *contact; // [capacity][3] N, mean force of the colliders over the frame before; NULL without colliders
 } ck_Trajectory;
 
 // Room for a model's start and all its frames, in memory that a child process can fill.
@@ -26,5 +31,9 @@ void ck_trajectory_free(ck_Trajectory *trajectory);
 // [3*n] m and m/s of one frame.
 double *ck_trajectory_position(const ck_Trajectory *trajectory, int frame);
 double *ck_trajectory_velocity(const ck_Trajectory *trajectory, int frame);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

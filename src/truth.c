@@ -1,6 +1,7 @@
 #include "truth.h"
 
 #include "truth_cache.h"
+#include "truth_contact.h"
 #include "truth_forms.h"
 #include "truth_modes.h"
 #include "truth_solve.h"
@@ -18,7 +19,9 @@ static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
      .solve = ck_truth_solve_equilibrium},
     {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), step halved until two runs agree to 1e-9", false,
-     .solve = ck_truth_solve_trajectory},
+     .terms = CK_TERM_RELEASE, .solve = ck_truth_solve_trajectory},
+    {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
+     true, .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
      .at = ck_truth_vertical_chain},
     {"catenary", CLOSED,
@@ -36,6 +39,12 @@ static const ck_TruthForm forms[] = {
      .at = ck_truth_hanging_chain, .off = ck_truth_hanging_chain_off},
     {"pendulum", CLOSED, "sin(theta/2) = sin(theta_0/2)*cd(sqrt(g/L)*t); period 2*pi*sqrt(L/g)/AGM(1, cos(theta_0/2))",
      false, .at = ck_truth_pendulum},
+    {"bounce", CLOSED, "heights e^(2n)*h_0, rest after t_1 + 2*e*v_1/(g*(1 - e))", false, .terms = CK_TERM_PLANE,
+     .at = ck_truth_bounce},
+    {"slide", CLOSED, "s'' = g_t -+ mu*g_n; stop distance v^2/(2*(mu*g_n - g_t)); sticks for g_t <= mu*g_n", false,
+     .terms = CK_TERM_PLANE, .at = ck_truth_slide},
+    {"sphere_slide", CLOSED, "theta'' = (g/R)*sin(theta) up to cos(theta) = 2/3*cos(theta_0) + v_0^2/(3*g*R), then falls",
+     false, .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide},
 };
 
 int ck_truth_count(void) {
@@ -63,6 +72,11 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {
     if (!model->truth) return CK_OK;
     const ck_TruthForm *form = ck_truth_form_find(model->truth);
     if (!form) return fail_unknown(model, error);
+    unsigned beyond = model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE) & ~form->terms;
+    for (int bit = 0; bit < CK_TERM_COUNT; bit++)
+        if (beyond & (1u << bit))
+            return ck_fail(error, CK_BAD_INPUT, "%s: truth %s knows no %s; take another, or none", model->name,
+                           model->truth, ck_term_names[bit]);
     if (!form->at) return CK_OK;
     double *state = malloc(6 * sizeof(double) * (size_t)model->particle_count);
     if (!state) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
@@ -110,6 +124,8 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     truth->form = ck_truth_form_find(model->truth);
     truth->reference.is_static = truth->form->is_static;
     snprintf(truth->kind, sizeof truth->kind, "%s", truth->form->kind);
+    truth->reference.is_invariant = !truth->form->at && !truth->form->solve;
+    if (truth->reference.is_invariant) return CK_OK;
     status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
     truth->reference.trajectory = truth->paths[0];
     if (!status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count)

@@ -37,6 +37,11 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         const double numbers[5] = {spring->a, spring->b, spring->rest, spring->stiffness, spring->damping};
         value = hash(value, numbers, sizeof numbers);
     }
+    for (int i = 0; i < model->release_count; i++) {
+        const ck_Release *release = &model->releases[i];
+        value = hash(value, &release->frame, sizeof release->frame);
+        value = hash(value, release->particles, (size_t)release->particle_count * sizeof *release->particles);
+    }
     const double numbers[] = {model->gravity[0], model->gravity[1], model->gravity[2], model->force[0], model->force[1],
                               model->force[2],   model->drag,       model->duration,   model->step};
     return hash(value, numbers, sizeof numbers);

@@ -29,9 +29,9 @@ void fixture_run(ck_Trajectory *trajectory, const ck_Model *model, const ck_Engi
         fail_msg("%s on %s: %s", engine->name, model->name, error.message);
     assert_int_equal(ck_trajectory_create(trajectory, model, &error), CK_OK);
     for (int frame = 0; frame <= model->frame_count; frame++) {
-        if (frame && engine->step(state) != CK_STEP_OK)
+        if (frame && ck_engine_advance(engine, state, model, frame - 1) != CK_STEP_OK)
             fail_msg("%s on %s did not reach frame %d", engine->name, model->name, frame);
-        engine->read(state, ck_trajectory_position(trajectory, frame), ck_trajectory_velocity(trajectory, frame));
+        ck_engine_read(engine, state, trajectory, frame);
         trajectory->frame_count = frame + 1;
     }
     engine->destroy(state);

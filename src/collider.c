@@ -1,0 +1,81 @@
+#include "collider.h"
+
+#include "vector.h"
+
+#include <string.h>
+
+double ck_collider_gap(const ck_Collider *collider, const double *point, double *normal) {
+    double from[3];
+    ck_subtract(from, point, collider->point);
+    if (collider->shape == CK_PLANE) {
+        memcpy(normal, collider->normal, 3 * sizeof(double));
+        return ck_dot(from, normal);
+    }
+    double distance = ck_length(from);
+    // the centre has no direction out of its own: any will do
+    for (int axis = 0; axis < 3; axis++) normal[axis] = distance > 0 ? from[axis] / distance : axis == 1;
+    return distance - collider->radius;
+}
+
+static double hit_plane(double gap, double v, double a, double duration, double slack) {
+    // from the surface itself, only a fall back onto it is a hit
+    if (gap <= slack) return v > 0 && a < 0 && -2 * v / a <= duration ? -2 * v / a : INFINITY;
+    double root = v * v - 2 * a * gap;
+    if (root < 0) return INFINITY;
+    // of both ways to write the smaller positive root, the one that does not cancel
+    double time = v < 0 ? 2 * gap / (sqrt(root) - v) : a < 0 ? (v + sqrt(root)) / -a : INFINITY;
+    return time <= duration ? time : INFINITY;
+}
+
+typedef struct Path {
+    const double *x, *v, *a;
+} Path;
+
+static double gap_at(const ck_Collider *collider, const Path *path, double time) {
+    double point[3], normal[3];
+    memcpy(point, path->x, sizeof point);
+    ck_add_scaled(point, time, path->v);
+    ck_add_scaled(point, 0.5 * time * time, path->a);
+    return ck_collider_gap(collider, point, normal);
+}
+
+// The time between outside and inside at which the gap closes, to the last bit.
+static double bisect(const ck_Collider *collider, const Path *path, double outside, double inside) {
+    for (;;) {
+        double middle = 0.5 * (outside + inside);
+        if (middle <= outside || middle >= inside) return outside;
+        if (gap_at(collider, path, middle) > 0)
+            outside = middle;
+        else
+            inside = middle;
+    }
+}
+
+// A parabola meets a ball in up to four points. Within a step it is all but straight: where its chord comes closest it
+// is inside, or it is at the end, or it misses. Error: a parabola that dips in by less than a·duration²/8.
+static double hit_sphere(const ck_Collider *collider, const Path *path, double duration, double slack) {
+    double normal[3], from[3], chord[3] = {0}, gap = ck_collider_gap(collider, path->x, normal), outside = 0;
+    ck_subtract(from, path->x, collider->point);
+    ck_add_scaled(chord, 1, path->v);
+    ck_add_scaled(chord, 0.5 * duration, path->a);
+    double speed_squared = ck_dot(chord, chord), closest = duration;
+    if (speed_squared > 0) closest = fmin(duration, fmax(0, -ck_dot(from, chord) / speed_squared));
+    if (gap <= slack) {
+        double v = ck_dot(path->v, normal), a = ck_dot(path->a, normal);
+        // it only comes back where it turns within the step
+        if (!(v > 0 && a < 0)) return INFINITY;
+        outside = fmin(duration, -v / a);
+        closest = duration;
+    }
+    if (!(gap_at(collider, path, closest) < 0)) closest = duration;
+    if (!(gap_at(collider, path, closest) < 0)) return INFINITY;
+    return bisect(collider, path, outside, closest);
+}
+
+double ck_collider_hit(const ck_Collider *collider, const double *x, const double *v, const double *a, double duration,
+                       double slack) {
+    double normal[3];
+    if (collider->shape == CK_SPHERE) return hit_sphere(collider, &(Path){x, v, a}, duration, slack);
+    double gap = ck_collider_gap(collider, x, normal);
+    return hit_plane(gap, ck_dot(v, normal), ck_dot(a, normal), duration, slack);
+}

@@ -1,0 +1,40 @@
+// Native contact: particles against half-spaces and balls, with restitution and Coulomb friction.
+//
+// An impact is an impulse: the normal speed is reversed and scaled by e, the tangential speed loses at most
+// μ·(1 + e)·|v_n|. An impact slower than the contact-free acceleration makes in two substeps, 2·|a_n|·dt, cannot be told
+// from rest: it does not bounce. A body at rest or sliding is pushed with what it presses with, never pulled.
+#ifndef CK_CONTACT_H
+#define CK_CONTACT_H
+
+#include "model.h"
+
+typedef struct ck_Contact {
+    const ck_Model *model;
+    double dt;         // s, one substep
+    double slack;      // m: closer than this is touching
+    double impulse[3]; // N·s, of all colliders on the body since it was last cleared
+} ck_Contact;
+
+// NULL in a scene without colliders, which costs it one comparison a substep. *contact is freed with free.
+// Errors: CK_NO_MEMORY.
+ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double dt, ck_Error *error);
+
+// Moves a particle by one substep under a constant acceleration a, m/s², with every impact, slide, stop and lift-off on
+// the way at its time: a body in a uniform field bounces and slides without a step error.
+//   x, v  in-out, m and m/s, at the start and at the end of the substep
+// Cost: one crossing test a collider, one more for each event.
+void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, const double *a);
+
+// What acceleration is left of a, m/s², for a particle at x with speed v: that of a body which rests, slides or is not
+// in contact.
+void ck_contact_filter(const ck_Contact *contact, const double *x, const double *v, const double *a, double *left);
+
+// For methods that correct positions. Moves a particle that is inside a collider out of it, and takes from its way since
+// start along the surface what friction holds: at most μ times the way it was pushed out. Cost: one gap a collider.
+void ck_contact_project(ck_Contact *contact, double mass, const double *start, double *x);
+
+// True where a particle on its way from x with speed v under a, as in ck_contact_advance, hits a collider faster than
+// what counts as rest.
+bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a);
+
+#endif

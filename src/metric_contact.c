@@ -1,0 +1,120 @@
+#include "metric_contact.h"
+
+#include "collider.h"
+#include "vector.h"
+
+#include <string.h>
+
+// the smallest gap of all particles that are free at the start to all colliders, m
+static double smallest_gap(const ck_Model *model, const double *position) {
+    double smallest = INFINITY, normal[3];
+    for (int i = 0; i < model->particle_count; i++)
+        for (int j = 0; j < model->collider_count && !model->pinned[i]; j++)
+            smallest = fmin(smallest, ck_collider_gap(&model->colliders[j], position + 3 * i, normal));
+    return isfinite(smallest) ? smallest : NAN;
+}
+
+double ck_metric_height_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                           const ck_Reference *reference) {
+    (void)reference;
+    return smallest_gap(model, ck_trajectory_position(trajectory, frame)) / model->spacing;
+}
+
+double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                                const ck_Reference *reference) {
+    double height = ck_metric_height_at(model, trajectory, frame, reference);
+    return isnan(height) ? NAN : fmax(0, -height);
+}
+
+double ck_metric_penetration_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                  const ck_Reference *reference) {
+    double deepest = NAN;
+    for (int frame = 0; frame < trajectory->frame_count; frame++)
+        deepest = fmax(deepest, ck_metric_penetration_at(model, trajectory, frame, reference));
+    return deepest;
+}
+
+static const ck_Collider *first_plane(const ck_Model *model) {
+    for (int i = 0; i < model->collider_count; i++)
+        if (model->colliders[i].shape == CK_PLANE && !model->pin_count) return &model->colliders[i];
+    return NULL;
+}
+
+// Mean position and velocity of the whole body, weighted by mass.
+static void center_of_mass(const ck_Model *model, const ck_Trajectory *trajectory, int frame, double *position,
+                           double *velocity) {
+    double mass = ck_model_free_mass(model);
+    memset(position, 0, 3 * sizeof(double));
+    memset(velocity, 0, 3 * sizeof(double));
+    for (int i = 0; i < model->particle_count; i++) {
+        ck_add_scaled(position, model->mass[i] / mass, ck_trajectory_position(trajectory, frame) + 3 * i);
+        ck_add_scaled(velocity, model->mass[i] / mass, ck_trajectory_velocity(trajectory, frame) + 3 * i);
+    }
+}
+
+double ck_metric_restitution_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                  const ck_Reference *reference) {
+    (void)reference;
+    const ck_Collider *plane = first_plane(model);
+    double field[3], position[3], velocity[3], normal[3], top = NAN, start = NAN;
+    if (!plane) return NAN;
+    ck_model_mean_field(model, field);
+    double press = -ck_dot(field, plane->normal), lowest = INFINITY;
+    for (int i = 0; i < model->particle_count; i++)
+        lowest = fmin(lowest, ck_collider_gap(plane, model->position + 3 * i, normal));
+    bool falling = false, rising = false;
+    double base = 0;
+    for (int frame = 0; frame < trajectory->frame_count; frame++) {
+        center_of_mass(model, trajectory, frame, position, velocity);
+        double height = ck_collider_gap(plane, position, normal), speed = ck_dot(velocity, normal);
+        if (frame == 0) base = height - lowest;
+        double energy = 0.5 * speed * speed + press * (height - base);
+        if (frame == 0) start = energy;
+        falling |= speed < 0;
+        // the frame next to the apex tells best: there the height is what is left of an impact
+        if (rising && speed <= 0) break;
+        rising |= falling && speed > 0;
+        if (rising || (falling && speed == 0)) top = fmax(0, energy);
+    }
+    // a body that starts on the plane has nothing to bounce with
+    return lowest > 1e-3 * model->spacing && press > 0 ? sqrt(top / start) : NAN;
+}
+
+double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+    (void)reference;
+    const ck_Collider *plane = first_plane(model);
+    double field[3], drive[3], from[3], to[3], start[3], end[3], line[3] = {0}, normal[3];
+    if (!plane) return NAN;
+    for (int i = 0; i < model->particle_count; i++)
+        if (fabs(ck_collider_gap(plane, model->position + 3 * i, normal)) > 1e-3 * model->spacing) return NAN;
+    ck_model_mean_field(model, field);
+    double press = -ck_dot(field, plane->normal);
+    memcpy(drive, field, sizeof drive);
+    ck_add_scaled(drive, press, plane->normal);
+    center_of_mass(model, trajectory, 0, from, start);
+    center_of_mass(model, trajectory, trajectory->frame_count - 1, to, end);
+    const double *direction = ck_length(start) > ck_metric_still_speed(model) ? start : drive;
+    if (!(ck_length(direction) > 0) || !(press > 0)) return NAN;
+    ck_add_scaled(line, 1 / ck_length(direction), direction);
+    ck_subtract(to, to, from);
+    double way = ck_dot(to, line), first = ck_dot(start, line), last = ck_dot(end, line);
+    // one that sticks tells nothing but that μ is enough
+    if (!(way > 1e-2 * model->spacing)) return NAN;
+    return ((first * first - last * last) / (2 * way) + ck_dot(drive, line)) / press;
+}
+
+double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                    const ck_Reference *reference) {
+    (void)reference;
+    double field[3], sum = 0, weight = ck_model_free_mass(model);
+    int released = 0, last = trajectory->frame_count - 1, first = last - last / 20;
+    for (int i = 0; i < model->release_count; i++) released += model->releases[i].particle_count;
+    ck_model_mean_field(model, field);
+    double strength = ck_length(field);
+    if (!trajectory->contact || released < model->pin_count || !(strength > 0)) return NAN;
+    for (int i = 0; i < model->particle_count; i++)
+        if (model->pinned[i]) weight += model->mass[i];
+    for (int frame = first; frame <= last; frame++)
+        sum -= ck_dot(trajectory->contact + 3 * (size_t)frame, field) / strength;
+    return sum / (last - first + 1) / (weight * strength);
+}
