@@ -1,10 +1,12 @@
 // ODE: particles are bodies, springs are double ball joints whose softness (ERP, CFM) is the spring's k and c.
 #include "engine_list.h"
+#include "ode_contact.h"
 #include "stability.h"
 #include "vector.h"
 
 #include <ode/ode.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Rows that dWorldStep, whose cost grows with their cube, is given at most: 1500 take about 0.1 s a step.
 #define DIRECT_MAX_ROWS 1500
@@ -16,7 +18,8 @@ typedef struct OdeWorld {
     dWorldID world;
     dJointGroupID joints;
     dBodyID *bodies; // [particle_count]
-    double dt;       // s, one substep
+    ck_OdeContacts *contacts;
+    double dt; // s, one substep
     uint32_t substeps;
     bool quick;
 } OdeWorld;
@@ -38,8 +41,11 @@ static double constraint_force_mixing(const ck_Spring *spring, double h) {
     return isinf(spring->stiffness) ? 1e-8 : 1 / (h * spring->stiffness + spring->damping);
 }
 
+// With contact that may be on every particle, of three rows each with friction.
 static int row_count(const ck_Model *model) {
     int rows = 0;
+    for (int i = 0; i < model->collider_count; i++)
+        rows += model->particle_count * (model->colliders[i].friction > 0 ? 3 : 1);
     for (int i = 0; i < model->spring_count; i++)
         rows += !(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]);
     return rows;
@@ -65,12 +71,24 @@ static void translate_springs(const ck_Model *model, double h, ck_Ledger *ledger
                                      model->springs[0].damping, "in both of the above", match});
 }
 
+static void translate_contact(const ck_Model *model, ck_Ledger *ledger) {
+    for (int i = 0; i < model->collider_count; i++) {
+        const ck_Collider *collider = &model->colliders[i];
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){"restitution", collider->restitution, "1", "motionN", collider->restitution,
+                                     "e*v_n at the surface, in the step after the impact; rests below 2*g*h", CK_APPROXIMATE});
+        ck_ledger_add(ledger, (ck_LedgerRow){"friction", collider->friction, "1", "mu", collider->friction,
+                                             "dContactApprox1, fdir1 along the slip: a cone", CK_APPROXIMATE});
+    }
+}
+
 // Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, and at
-// most 1/120 s and a tenth of drag's time; for QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9
-// of a spring's error.
+// most 1/120 s, 1/240 s where there is contact, and a tenth of drag's time; for QuickStep also k·h²/m ≤ 5 (k·h²·W ≤
+// 10), where 50 iterations leave 1e-9 of a spring's error.
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                       bool quick) {
-    double limit = fmin(fmin(1.0 / 120, ck_stability_transverse_time(model)), ck_stability_drag_time(model, 0.1));
+    double limit = fmin(fmin(model->collider_count ? 1.0 / 240 : 1.0 / 120, ck_stability_transverse_time(model)),
+                        ck_stability_drag_time(model, 0.1));
     double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
     if (quick && rate > 0) limit = fmin(limit, sqrt(10 / rate));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
@@ -91,10 +109,12 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                              "h*drag, threshold 0: first order", CK_APPROXIMATE});
     // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
     translate_springs(model, h, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
+    translate_contact(model, ledger);
 }
 
 static void destroy(void *state) {
     OdeWorld *ode = state;
+    ck_ode_contacts_destroy(ode->contacts);
     if (ode->joints) dJointGroupDestroy(ode->joints);
     if (ode->world) dWorldDestroy(ode->world);
     if (--world_count == 0) dCloseODE();
@@ -121,18 +141,28 @@ static void add_bodies(OdeWorld *ode) {
     }
 }
 
-static void add_joints(OdeWorld *ode) {
-    const ck_Model *model = ode->model;
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        if (model->pinned[spring->a] && model->pinned[spring->b]) continue;
-        dJointID joint = dJointCreateDBall(ode->world, ode->joints);
-        dJointAttach(joint, ode->bodies[spring->a], ode->bodies[spring->b]);
-        // after attaching, which takes the current length for the rest length
-        dJointSetDBallDistance(joint, spring->rest);
-        dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt));
-        dJointSetDBallParam(joint, dParamCFM, constraint_force_mixing(spring, ode->dt));
+static void add_joint(OdeWorld *ode, const ck_Spring *spring) {
+    dJointID joint = dJointCreateDBall(ode->world, ode->joints);
+    dJointAttach(joint, ode->bodies[spring->a], ode->bodies[spring->b]);
+    // after attaching, which takes the current length for the rest length
+    dJointSetDBallDistance(joint, spring->rest);
+    dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt));
+    dJointSetDBallParam(joint, dParamCFM, constraint_force_mixing(spring, ode->dt));
+}
+
+// Springs between two pins do nothing, until one of them is let go.
+static void release(void *state, int particle) {
+    OdeWorld *ode = state;
+    dBodyID body = ode->bodies[particle];
+    for (int i = 0; i < ode->model->spring_count; i++) {
+        const ck_Spring *spring = &ode->model->springs[i];
+        if (spring->a != particle && spring->b != particle) continue;
+        if (dBodyIsKinematic(ode->bodies[spring->a]) && dBodyIsKinematic(ode->bodies[spring->b]))
+            add_joint(ode, spring);
     }
+    dBodySetDynamic(body);
+    dBodySetLinearVel(body, 0, 0, 0);
+    dBodySetLinearDamping(body, ode->model->drag * ode->dt);
 }
 
 static ck_Status build(void **state, const ck_Model *model, const ck_Settings *used, bool quick, ck_Error *error) {
@@ -143,7 +173,8 @@ static ck_Status build(void **state, const ck_Model *model, const ck_Settings *u
     ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
     if (ode->bodies) ode->world = dWorldCreate();
     if (ode->world) ode->joints = dJointGroupCreate(0);
-    if (!ode->joints) {
+    ck_Status status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
+    if (!ode->joints || status) {
         destroy(ode);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
@@ -152,7 +183,9 @@ static ck_Status build(void **state, const ck_Model *model, const ck_Settings *u
     if (quick) dWorldSetQuickStepNumIterations(ode->world, (int)used->iterations);
     if (quick) dWorldSetQuickStepW(ode->world, used->relaxation);
     add_bodies(ode);
-    add_joints(ode);
+    for (int i = 0; i < model->spring_count; i++)
+        if (!(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]))
+            add_joint(ode, &model->springs[i]);
     *state = ode;
     return CK_OK;
 }
@@ -188,14 +221,17 @@ static bool is_safe(const OdeWorld *ode) {
 static ck_StepResult step(void *state) {
     OdeWorld *ode = state;
     const double *force = ode->model->force;
+    if (ode->contacts) memset(ode->contacts->impulse, 0, sizeof ode->contacts->impulse);
     for (uint32_t i = 0; i < ode->substeps; i++) {
         if (!is_safe(ode)) return CK_STEP_DIVERGED;
         for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
-            if (!ode->model->pinned[j]) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
+            if (!dBodyIsKinematic(ode->bodies[j])) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
+        if (ode->contacts) ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies);
         // QuickStep shuffles its rows from a seed that is global to the process
         dRandSetSeed(1);
         int done = ode->quick ? dWorldQuickStep(ode->world, ode->dt) : dWorldStep(ode->world, ode->dt);
         if (!done) return CK_STEP_NO_MEMORY;
+        if (ode->contacts) ck_ode_contacts_remove(ode->contacts);
     }
     return is_safe(ode) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
@@ -209,9 +245,15 @@ static void read_state(const void *state, double *position, double *velocity) {
         }
 }
 
+static void read_contact(const void *state, double *force) {
+    const OdeWorld *ode = state;
+    for (int axis = 0; axis < 3; axis++)
+        force[axis] = ode->contacts ? ode->contacts->impulse[axis] / ode->model->step : 0;
+}
+
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
-     CK_TERM_VELOCITY)
+     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
 
 const ck_Engine ck_ode_quick = {
     .name = "ode-quick",
@@ -224,6 +266,8 @@ const ck_Engine ck_ode_quick = {
     .create = create_quick,
     .step = step,
     .read = read_state,
+    .release = release,
+    .contact = read_contact,
     .destroy = destroy,
 };
 
@@ -238,5 +282,7 @@ const ck_Engine ck_ode_direct = {
     .create = create_direct,
     .step = step,
     .read = read_state,
+    .release = release,
+    .contact = read_contact,
     .destroy = destroy,
 };

@@ -12,7 +12,8 @@ extern "C" {
 double ck_collider_gap(const ck_Collider *collider, const double *point, double *normal);
 
 // The first time in (0, duration] at which a point that moves by x + v·t + a·t²/2 comes to touch the surface from
-// outside, in s; INFINITY where it does not. A point that starts within slack (m) of it is outside as long as it leaves.
+// outside, in s; INFINITY where it does not. A point that starts within slack (m) of it is outside as long as it
+// leaves.
 double ck_collider_hit(const ck_Collider *collider, const double *x, const double *v, const double *a, double duration,
                        double slack);
 

@@ -84,7 +84,8 @@ ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double bu
     double frames = PIECES * (FINER * (PIECE_FRAMES + APART) + PIECE_FRAMES * 2);
     bool complete = run->trajectory.frame_count == run->model->frame_count + 1;
     // a restart knows nothing of pins let go before it
-    if (!complete || run->model->release_count || run->measured_cpu / run->model->frame_count * frames > budget) return CK_OK;
+    if (!complete || run->model->release_count || run->measured_cpu / run->model->frame_count * frames > budget)
+        return CK_OK;
     Result *result = ck_shared_allocate(sizeof *result);
     if (!result) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;

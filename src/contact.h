@@ -1,8 +1,8 @@
 // Native contact: particles against half-spaces and balls, with restitution and Coulomb friction.
 //
 // An impact is an impulse: the normal speed is reversed and scaled by e, the tangential speed loses at most
-// μ·(1 + e)·|v_n|. An impact slower than the contact-free acceleration makes in two substeps, 2·|a_n|·dt, cannot be told
-// from rest: it does not bounce. A body at rest or sliding is pushed with what it presses with, never pulled.
+// μ·(1 + e)·|v_n|. An impact slower than the contact-free acceleration makes in two substeps, 2·|a_n|·dt, cannot be
+// told from rest: it does not bounce. A body at rest or sliding is pushed with what it presses with, never pulled.
 #ifndef CK_CONTACT_H
 #define CK_CONTACT_H
 
@@ -29,8 +29,9 @@ void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, 
 // in contact.
 void ck_contact_filter(const ck_Contact *contact, const double *x, const double *v, const double *a, double *left);
 
-// For methods that correct positions. Moves a particle that is inside a collider out of it, and takes from its way since
-// start along the surface what friction holds: at most μ times the way it was pushed out. Cost: one gap a collider.
+// For methods that correct positions. Moves a particle that is inside a collider out of it, and takes from its way
+// since start along the surface what friction holds: at most μ times the way it was pushed out. Cost: one gap a
+// collider.
 void ck_contact_project(ck_Contact *contact, double mass, const double *start, double *x);
 
 // True where a particle on its way from x with speed v under a, as in ck_contact_advance, hits a collider faster than

@@ -203,7 +203,8 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
     *equilibrium = (ck_Equilibrium){0};
     if ((model->terms & (CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)) || !model->pin_count ||
         !(ck_stability_load(model) > 0))
-        return ck_fail(error, CK_REFUSED, "%s: equilibrium needs pins that stay, a load, springs that stretch, and no colliders",
+        return ck_fail(error, CK_REFUSED,
+                       "%s: equilibrium needs pins that stay, a load, springs that stretch, and no colliders",
                        model->name);
     Newton newton;
     ck_Status status = start_newton(&newton, model, start);

@@ -10,7 +10,7 @@ typedef struct ck_Reference {
     ck_Trajectory trajectory; // frame_count 0: there is none
     bool is_static;
     bool is_invariant; // nothing is known of the shape, only what holds at rest whatever it is
-    int horizon; // the last frame up to which positions can be compared point by point; unused when static
+    int horizon;       // the last frame up to which positions can be compared point by point; unused when static
 } ck_Reference;
 
 // What a metric's truth is.

@@ -23,8 +23,8 @@ double ck_metric_restitution_over(const ck_Model *model, const ck_Trajectory *tr
 // [(v_0² − v_1²)/(2·s) + g_t]/g_n.
 double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
 
-// The force of the colliders against the field over the last twentieth of the run / weight; NaN where pins carry some of
-// it, and where the engine does not tell.
+// The force of the colliders against the field over the last twentieth of the run / weight; NaN where pins carry some
+// of it, and where the engine does not tell.
 double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *trajectory,
                                     const ck_Reference *reference);
 

@@ -54,8 +54,8 @@ typedef struct ck_Collider {
 } ck_Collider;
 
 typedef struct ck_Release {
-    double at;   // s
-    int frame;   // the first at or after that time: pins are let go between frames
+    double at; // s
+    int frame; // the first at or after that time: pins are let go between frames
     int *particles;
     int particle_count;
 } ck_Release;

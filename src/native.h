@@ -21,7 +21,7 @@ typedef struct ck_Native {
 
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
-    (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |          \
+    (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |           \
      CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
 
 const char *ck_native_version(void);

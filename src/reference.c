@@ -135,8 +135,7 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
     *path = (ck_ReferencePath){0};
     unsigned beyond = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE;
     if (model->terms & beyond)
-        return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no rigid bars or colliders",
-                       model->name);
+        return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no rigid bars or colliders", model->name);
     double frequency;
     ck_Status status = ck_stability_frequency(model, &frequency);
     // the method is stable to 2.78/ω; it starts at a quarter of that

@@ -15,8 +15,8 @@ typedef struct ck_Trajectory {
     int particle_count;
     int frame_count; // frames written, the start among them
     int capacity;
-    double step;  // s between frames
-    double *data; // [capacity][2][3*n] positions, then velocities; shared with child processes
+    double step;     // s between frames
+    double *data;    // [capacity][2][3*n] positions, then velocities; shared with child processes
     size_t bytes;    // of data
     double *contact; // [capacity][3] N, mean force of the colliders over the frame before; NULL without colliders
 } ck_Trajectory;

@@ -43,8 +43,9 @@ static const ck_TruthForm forms[] = {
      .at = ck_truth_bounce},
     {"slide", CLOSED, "s'' = g_t -+ mu*g_n; stop distance v^2/(2*(mu*g_n - g_t)); sticks for g_t <= mu*g_n", false,
      .terms = CK_TERM_PLANE, .at = ck_truth_slide},
-    {"sphere_slide", CLOSED, "theta'' = (g/R)*sin(theta) up to cos(theta) = 2/3*cos(theta_0) + v_0^2/(3*g*R), then falls",
-     false, .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide},
+    {"sphere_slide", CLOSED,
+     "theta'' = (g/R)*sin(theta) up to cos(theta) = 2/3*cos(theta_0) + v_0^2/(3*g*R), then falls", false,
+     .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide},
 };
 
 int ck_truth_count(void) {

@@ -1,0 +1,104 @@
+#include "ode_contact.h"
+
+#include "collider.h"
+#include "vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Share of a depth that is pushed out in a step, and the most speed that this may give, m/s: more would bounce.
+#define PUSH_SHARE 0.2
+#define PUSH_SPEED 0.1
+
+ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *model, double h, ck_Error *error) {
+    *contacts = NULL;
+    if (!model->collider_count) return CK_OK;
+    ck_OdeContacts *made = calloc(1, sizeof *made);
+    size_t most = (size_t)model->particle_count * (size_t)model->collider_count;
+    if (made) *made = (ck_OdeContacts){.model = model, .h = h, .feedback = calloc(most, sizeof *made->feedback)};
+    if (made && made->feedback) made->joints = dJointGroupCreate(0);
+    if (!made || !made->joints) {
+        ck_ode_contacts_destroy(made);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    *contacts = made;
+    return CK_OK;
+}
+
+void ck_ode_contacts_destroy(ck_OdeContacts *contacts) {
+    if (!contacts) return;
+    if (contacts->joints) dJointGroupDestroy(contacts->joints);
+    free(contacts->feedback);
+    free(contacts);
+}
+
+// The speed that a particle which is inside by depth and gets deeper at speed leaves with: at the surface, e times the
+// speed it came with. pull is the field's acceleration into the surface. ODE moves by a step's last speed, so that its
+// positions are those of a speed which is half a step's pull ahead.
+static double rebound(double restitution, double depth, double speed, double pull, double h) {
+    double inside = speed + 0.5 * pull * h, surface_squared = fmax(0, inside * inside - 2 * pull * depth);
+    return sqrt(fmax(0, restitution * restitution * surface_squared + 2 * pull * depth)) - 0.5 * pull * h;
+}
+
+// The speed along the normal that the joint asks for. ODE's own bounce adds what it corrects of the depth, and gains
+// energy by it. An impact is answered once it is inside; without restitution it stops at the surface. What cannot be
+// told from rest, 2·g·h, rests.
+static double wanted_speed(const ck_Collider *collider, double gap, double speed, double rest, double pull, double h) {
+    if (gap >= 0) return -gap / h;
+    if (speed < -rest && collider->restitution > 0) return rebound(collider->restitution, -gap, -speed, pull, h);
+    return fmin(PUSH_SHARE * -gap / h, PUSH_SPEED);
+}
+
+// The direction along the surface in which the particle slides, or would: along any other, friction is a pyramid.
+static void slip_direction(double *slip, const double *velocity, const double *field, const double *normal, double h) {
+    memcpy(slip, velocity, 3 * sizeof(double));
+    ck_add_scaled(slip, h, field);
+    ck_add_scaled(slip, -ck_dot(slip, normal), normal);
+    double length = ck_length(slip);
+    if (!(length > 1e-12 * (ck_length(velocity) + h * ck_length(field)))) {
+        int least = fabs(normal[0]) <= fabs(normal[1]) ? 0 : 1;
+        if (fabs(normal[2]) < fabs(normal[least])) least = 2;
+        memset(slip, 0, 3 * sizeof(double));
+        slip[least] = 1;
+        ck_add_scaled(slip, -normal[least], normal);
+        length = ck_length(slip);
+    }
+    for (int axis = 0; axis < 3; axis++) slip[axis] /= length;
+}
+
+static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, int particle,
+                        const ck_Collider *collider) {
+    const double *position = dBodyGetPosition(body), *velocity = dBodyGetLinearVel(body);
+    double normal[3], field[3], slip[3], h = contacts->h;
+    double gap = ck_collider_gap(collider, position, normal), speed = ck_dot(velocity, normal);
+    ck_model_field(contacts->model, particle, field);
+    double rest = 2 * ck_length(field) * h;
+    // an impact with restitution is left to go in first
+    double reach = collider->restitution > 0 && speed < -rest ? 0 : fmax(rest * h, -2 * speed * h);
+    if (gap > reach) return;
+    dContact contact = {.surface = {.mode = dContactMotionN | dContactSoftERP | dContactApprox1 | dContactFDir1,
+                                    .mu = collider->friction,
+                                    .soft_erp = 0,
+                                    .motionN = wanted_speed(collider, gap, speed, rest, -ck_dot(field, normal), h)}};
+    slip_direction(slip, velocity, field, normal, h);
+    for (int axis = 0; axis < 3; axis++) {
+        contact.geom.pos[axis] = position[axis]; // at the centre: nothing turns
+        contact.geom.normal[axis] = normal[axis];
+        contact.fdir1[axis] = slip[axis];
+    }
+    dJointID joint = dJointCreateContact(world, contacts->joints, &contact);
+    dJointAttach(joint, body, NULL);
+    dJointSetFeedback(joint, &contacts->feedback[contacts->count++]);
+}
+
+void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies) {
+    for (int i = 0; i < contacts->model->particle_count; i++)
+        for (int j = 0; j < contacts->model->collider_count && !dBodyIsKinematic(bodies[i]); j++)
+            add_contact(contacts, world, bodies[i], i, &contacts->model->colliders[j]);
+}
+
+void ck_ode_contacts_remove(ck_OdeContacts *contacts) {
+    for (int i = 0; i < contacts->count; i++) ck_add_scaled(contacts->impulse, contacts->h, contacts->feedback[i].f1);
+    dJointGroupEmpty(contacts->joints);
+    contacts->count = 0;
+}

@@ -1,0 +1,29 @@
+// Contact for ODE: joints straight from the exact surface, in place of ODE's geometry, which has neither points nor
+// restitution without gain.
+#ifndef CK_ODE_CONTACT_H
+#define CK_ODE_CONTACT_H
+
+#include "model.h"
+
+#include <ode/ode.h>
+
+typedef struct ck_OdeContacts {
+    const ck_Model *model;
+    double h;                 // s, one substep
+    dJointGroupID joints;     // of this substep
+    dJointFeedback *feedback; // [particle_count * collider_count]
+    int count;                // of this substep
+    double impulse[3];        // N·s on the body since it was last cleared
+} ck_OdeContacts;
+
+// NULL in a scene without colliders. Errors: CK_NO_MEMORY.
+ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *model, double h, ck_Error *error);
+void ck_ode_contacts_destroy(ck_OdeContacts *contacts);
+
+// Before a step: a joint for each particle that touches, or is about to. bodies  [particle_count]
+void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies);
+
+// After it: notes what the joints pushed with, and removes them.
+void ck_ode_contacts_remove(ck_OdeContacts *contacts);
+
+#endif
