@@ -2,6 +2,7 @@
 
 #include "vector.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -9,6 +10,23 @@ extern "C" const char *ck_bullet_version(void) {
     static char text[24];
     std::snprintf(text, sizeof text, "%d.%02d double", btGetVersion() / 100, btGetVersion() % 100);
     return text;
+}
+
+ck_BulletScene::ck_BulletScene(const ck_Model *scene)
+    : now(*scene), position(scene->position, scene->position + 3 * scene->particle_count),
+      velocity(scene->velocity, scene->velocity + 3 * scene->particle_count),
+      pinned(std::make_unique<bool[]>(scene->particle_count)) {
+    std::copy(scene->pinned, scene->pinned + scene->particle_count, pinned.get());
+    now.position = position.data();
+    now.velocity = velocity.data();
+    now.pinned = pinned.get();
+}
+
+void ck_BulletScene::release(const double *at, const double *speed, int particle) {
+    std::copy(at, at + position.size(), position.begin());
+    std::copy(speed, speed + velocity.size(), velocity.begin());
+    std::fill_n(velocity.begin() + 3 * particle, 3, 0.0);
+    pinned[particle] = false;
 }
 
 static btVector3 vector_at(const double *values, int index) {
@@ -41,12 +59,12 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
     body.node_of_particle.resize(model->particle_count);
     std::vector<btVector3> position;
     std::vector<btScalar> mass;
-    std::vector<int> particle_of_node;
     for (bool pinned : {false, true})
         for (int i = 0; i < model->particle_count; i++) {
             if (model->pinned[i] != pinned) continue;
             body.node_of_particle[i] = static_cast<int>(position.size());
             position.push_back(vector_at(model->position, i));
+            body.particle_of_node.push_back(i);
             mass.push_back(pinned ? 0 : model->mass[i]);
         }
     body.soft = std::make_unique<btSoftBody>(info, model->particle_count, position.data(), mass.data());
@@ -75,7 +93,19 @@ bool ck_bullet_body_is_finite(const ck_BulletBody &body) {
     return true;
 }
 
-void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter) {
+static void ledger_contact(ck_Ledger *ledger, const ck_Model *model, const char *friction_formula) {
+    for (int i = 0; i < model->collider_count; i++) {
+        const ck_Collider *collider = &model->colliders[i];
+        ck_ledger_add(ledger, {"restitution", collider->restitution, "1", "none", 0,
+                               "the bridge gives contact nodes e times the speed they met the surface with",
+                               collider->restitution > 0 ? CK_APPROXIMATE : CK_EXACT});
+        ck_ledger_add(ledger, {"friction", collider->friction, "1", "setFriction", collider->friction, friction_formula,
+                               CK_APPROXIMATE});
+    }
+}
+
+void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,
+                      const char *friction_formula) {
     ck_ledger_add(ledger,
                   {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
     ck_ledger_add(ledger,
@@ -85,4 +115,5 @@ void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Setting
         ck_ledger_add(ledger, {"gravity", gravity, "m/s2", "m_gravity", gravity, "g", CK_EXACT});
     if (model->terms & CK_TERM_FORCE)
         ck_ledger_add(ledger, {"force", force, "N", force_parameter, force, "F", CK_EXACT});
+    ledger_contact(ledger, model, friction_formula);
 }

@@ -10,6 +10,22 @@
 
 static_assert(sizeof(btScalar) == 8, "Bullet must be built in double precision: link bullet-float64");
 
+// A model whose pins can be let go: what a world is built from again when they are.
+class ck_BulletScene {
+  public:
+    explicit ck_BulletScene(const ck_Model *scene);
+    const ck_Model *model() const {
+        return &now;
+    }
+    // Goes on from that state, with one pin less, at rest.
+    void release(const double *at, const double *speed, int particle);
+
+  private:
+    ck_Model now;
+    std::vector<double> position, velocity;
+    std::unique_ptr<bool[]> pinned;
+};
+
 struct ck_BulletBody {
     const ck_Model *model;
     double dt; // s, one substep
@@ -17,6 +33,7 @@ struct ck_BulletBody {
     std::unique_ptr<btSoftBody> soft;
     std::vector<int>
         node_of_particle; // pinned particles come last, as the contact solver of the deformable world needs
+    std::vector<int> particle_of_node;
     std::vector<const ck_Spring *> spring; // of each link
 };
 
@@ -29,9 +46,10 @@ void ck_bullet_body_read(const ck_BulletBody &body, double *position, double *ve
 // False where any node has left the finite numbers, or what Bullet can clamp them to.
 bool ck_bullet_body_is_finite(const ck_BulletBody &body);
 
-// Adds the rows that both worlds fill alike: time step, mass, gravity, force.
-// force_parameter is where the world takes the force.
-void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter);
+// Adds the rows that both worlds fill alike: time step, mass, gravity, force, contact.
+//   force_parameter  where the world takes the force;  friction_formula  what it makes of friction
+void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,
+                      const char *friction_formula);
 
 extern "C" const char *ck_bullet_version(void);
 

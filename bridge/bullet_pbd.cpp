@@ -1,20 +1,71 @@
 // Bullet's classic soft body: position-based, set up to answer to a physical stiffness.
 //
 // Without colliders the world around it has nothing to do, and only its cost and its float time step would be added:
-// the body is stepped by the same three calls that the world would make.
-#include "bullet_body.hpp"
+// the body is stepped by the same calls that the world would make.
+#include "bullet_contact.hpp"
+#include "collider.h"
 #include "engine_list.h"
 #include "stability.h"
 
+#include <BulletSoftBody/btDefaultSoftBodySolver.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletDynamicsCommon.h>
 #include <cmath>
 
 namespace {
 
-struct ClassicState {
+class World : public btSoftRigidDynamicsWorld {
+  public:
+    World(btDispatcher *dispatcher, btBroadphaseInterface *broadphase, btConstraintSolver *constraint_solver,
+          btCollisionConfiguration *configuration, btDefaultSoftBodySolver *soft_solver)
+        : btSoftRigidDynamicsWorld(dispatcher, broadphase, constraint_solver, configuration, soft_solver),
+          solver(soft_solver) {}
+    void step_once(btScalar dt) {
+        internalSingleStepSimulation(dt);
+    }
+
+  protected:
+    // Bullet's own casts dt to float
+    void predictUnconstraintMotion(btScalar dt) override {
+        btDiscreteDynamicsWorld::predictUnconstraintMotion(dt);
+        solver->predictMotion(dt);
+    }
+
+  private:
+    btDefaultSoftBodySolver *solver;
+};
+
+// The world around a body that meets colliders. Members are destroyed in reverse: the world before what it points to.
+struct Surroundings {
+    btSoftBodyRigidBodyCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver constraint_solver;
+    btDefaultSoftBodySolver solver;
+    ck_BulletColliders colliders;
+    World world{&dispatcher, &broadphase, &constraint_solver, &configuration, &solver};
+};
+
+// Without colliders there are no surroundings.
+struct Classic {
     btSoftBodyWorldInfo info;
+    std::unique_ptr<Surroundings> around;
     ck_BulletBody body;
     std::vector<double> kappa_over_weight; // of each link: κ/(w_a + w_b)
     std::vector<btVector3> field_force;    // N on each node
+
+    ~Classic() {
+        if (!around) return;
+        around->world.removeSoftBody(body.soft.get());
+        around->colliders.remove(around->world);
+    }
+};
+
+struct ClassicState {
+    ck_BulletScene scene;
+    ck_Settings used;
+    std::unique_ptr<Classic> now;
 };
 
 // The share κ = kLST of a link's error that one iteration removes.
@@ -31,7 +82,8 @@ double spring_weight(const ck_Model *model, const ck_Spring &spring) {
 }
 
 // Time step: k·dt²/m ≤ 0.1 (k·dt²·W ≤ 0.2), where the static map is good to 1 %; rigid bars as for native-bars;
-// damping, a force before the step, takes at most half of a relative speed; drag, first order, 2 % of a speed.
+// damping, a force before the step, takes at most half of a relative speed; drag, first order, 2 % of a speed; where
+// there is contact 1/240 s.
 void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = ck_Settings{wanted->substeps, wanted->iterations ? wanted->iterations : 1, 0};
     double rate = ck_stability_stiffness_rate(model), limit = rate > 0 ? std::sqrt(0.2 / rate) : INFINITY;
@@ -39,9 +91,11 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     for (int i = 0; i < model->spring_count; i++)
         limit = std::fmin(limit, 0.5 / (model->springs[i].damping * spring_weight(model, model->springs[i])));
     limit = std::fmin(limit, ck_stability_drag_time(model, 0.02));
+    if (model->collider_count) limit = std::fmin(limit, 1.0 / 240);
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     double dt = model->step / used->substeps;
-    ck_bullet_ledger(ledger, model, *used, "Node::m_f");
+    ck_bullet_ledger(ledger, model, *used, "Node::m_f",
+                     "RContact::m_c3 edited to a cone of what presses before links are solved");
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
         const ck_Spring *spring = ck_model_spring_of_kind(model, static_cast<ck_SpringKind>(kind));
         if (!spring) continue;
@@ -61,22 +115,76 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
                                "1 - 1/(1 + drag*dt)", CK_APPROXIMATE});
 }
 
-ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
-                 ck_Error *error) try {
-    translate(model, wanted, used, ledger);
-    auto state = std::make_unique<ClassicState>();
+// Share of a depth that is pushed out in a step, and the most speed that this may give, m/s: more would bounce.
+const double push_share = 0.2, push_speed = 0.1;
+
+// How far a node is to end above where it started the step, m, once its way into the surface is taken from it.
+double lift_of(const ck_Collider &collider, double gap, double way_in, double pull, double dt) {
+    if (way_in > 2 * std::fabs(pull) * dt * dt && collider.restitution > 0)
+        return dt * ck_collider_rebound(collider.restitution, -gap, way_in / dt - pull * dt, pull, dt);
+    // down to the surface, or slowly out of it
+    return gap >= 0 ? -gap : std::fmin(push_share * -gap, push_speed * dt);
+}
+
+// After detection, before links and contacts are solved: restitution, which Bullet lacks, and Coulomb's cone in place
+// of a share of the speed. Bullet removes n·(way) + (1 − c3)·(slip) and adds c4 times the depth.
+void edit_contacts(btDynamicsWorld *world, btScalar dt) {
+    const ck_BulletBody &body = *static_cast<ck_BulletBody *>(world->getWorldUserInfo());
+    for (int i = 0; i < body.soft->m_rcontacts.size(); i++) {
+        btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
+        const ck_Collider &collider = ck_BulletColliders::of(body.model, contact.m_cti.m_colObj);
+        const btVector3 &normal = contact.m_cti.m_normal;
+        btVector3 way = contact.m_node->m_x - contact.m_node->m_q;
+        double way_in = -way.dot(normal), slip = (way + normal * way_in).length();
+        double gap = contact.m_node->m_q.dot(normal) + contact.m_cti.m_offset, depth = way_in - gap;
+        double pull = -ck_bullet_field(body, body.particle_of_node[contact.m_node->index]).dot(normal);
+        double lift = lift_of(collider, gap, way_in, pull, dt), push = std::fmax(0, way_in + lift);
+        contact.m_c3 = slip > 0 ? 1 - std::fmin(1, collider.friction * push / slip) : 0;
+        contact.m_c4 = depth > 0 ? lift / depth : 0;
+    }
+}
+
+void surround(Classic &state) {
+    state.around = std::make_unique<Surroundings>();
+    World &world = state.around->world;
+    world.setGravity(state.info.m_gravity);
+    state.info.m_broadphase = &state.around->broadphase;
+    state.info.m_dispatcher = &state.around->dispatcher;
+    state.around->colliders.add(world, state.body, state.info);
+    world.setInternalTickCallback(edit_contacts, &state.body);
+    btSoftBody &soft = *state.body.soft;
+    soft.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
+    soft.setActivationState(DISABLE_DEACTIVATION);
+    // contacts last: the other way round, links push nodes back in
+    soft.m_cfg.m_psequence.clear();
+    soft.m_cfg.m_psequence.push_back(btSoftBody::ePSolver::Linear);
+    soft.m_cfg.m_psequence.push_back(btSoftBody::ePSolver::RContacts);
+    world.addSoftBody(&soft);
+}
+
+std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
+    auto state = std::make_unique<Classic>();
     state->info.m_gravity = btVector3(model->gravity[0], model->gravity[1], model->gravity[2]);
     state->info.m_sparsesdf.Initialize();
-    ck_bullet_body_build(state->body, model, used->substeps, &state->info);
+    ck_bullet_body_build(state->body, model, used.substeps, &state->info);
     btSoftBody &soft = *state->body.soft;
-    soft.m_cfg.piterations = static_cast<int>(used->iterations);
+    soft.m_cfg.piterations = static_cast<int>(used.iterations);
     soft.m_cfg.kDF = 1;
     soft.m_cfg.kDP = 1 - 1 / (1 + model->drag * state->body.dt);
     for (const ck_Spring *spring : state->body.spring) {
         double weight = spring_weight(model, *spring);
-        state->kappa_over_weight.push_back(kappa(*spring, weight, state->body.dt, used->iterations) / weight);
+        state->kappa_over_weight.push_back(kappa(*spring, weight, state->body.dt, used.iterations) / weight);
     }
     state->field_force.assign(soft.m_nodes.size(), btVector3(model->force[0], model->force[1], model->force[2]));
+    if (model->collider_count) surround(*state);
+    return state;
+}
+
+ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
+                 ck_Error *error) try {
+    translate(model, wanted, used, ledger);
+    auto state = std::make_unique<ClassicState>(ClassicState{ck_BulletScene(model), *used, nullptr});
+    state->now = build(state->scene.model(), *used);
     *out = state.release();
     return CK_OK;
 } catch (const std::bad_alloc &) {
@@ -85,7 +193,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
 
 // Before each step: Bullet's correction k·l(l² − L²)/(l² + L²) becomes Hooke's k·(l − L), and damping is added as a
 // force.
-void prepare_links(ClassicState &state) {
+void prepare_links(Classic &state) {
     btSoftBody &soft = *state.body.soft;
     for (int i = 0; i < soft.m_links.size(); i++) {
         btSoftBody::Link &link = soft.m_links[i];
@@ -102,12 +210,16 @@ void prepare_links(ClassicState &state) {
 }
 
 ck_StepResult step(void *out) {
-    ClassicState &state = *static_cast<ClassicState *>(out);
+    Classic &state = *static_cast<ClassicState *>(out)->now;
     btSoftBody &soft = *state.body.soft;
     for (uint32_t i = 0; i < state.body.substeps; i++) {
         prepare_links(state);
         if (state.body.model->terms & CK_TERM_FORCE)
             for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force[node], node);
+        if (state.around) {
+            state.around->world.step_once(state.body.dt);
+            continue;
+        }
         soft.predictMotion(state.body.dt);
         soft.solveConstraints();
     }
@@ -115,7 +227,16 @@ ck_StepResult step(void *out) {
 }
 
 void read_state(const void *state, double *position, double *velocity) {
-    ck_bullet_body_read(static_cast<const ClassicState *>(state)->body, position, velocity);
+    ck_bullet_body_read(static_cast<const ClassicState *>(state)->now->body, position, velocity);
+}
+
+// Bullet keeps masses in many places: the body is built again.
+void release(void *out, int particle) {
+    ClassicState &state = *static_cast<ClassicState *>(out);
+    std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
+    read_state(out, position.data(), velocity.data());
+    state.scene.release(position.data(), velocity.data(), particle);
+    state.now = build(state.scene.model(), state.used);
 }
 
 void destroy(void *state) {
@@ -131,10 +252,12 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .version = ck_bullet_version,
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-             CK_TERM_VELOCITY,
+             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
     .order = 1,
     .create = create,
     .step = step,
     .read = read_state,
+    .release = release,
+    .contact = nullptr,
     .destroy = destroy,
 };

@@ -32,20 +32,12 @@ void ck_ode_contacts_destroy(ck_OdeContacts *contacts) {
     free(contacts);
 }
 
-// The speed that a particle which is inside by depth and gets deeper at speed leaves with: at the surface, e times the
-// speed it came with. pull is the field's acceleration into the surface. ODE moves by a step's last speed, so that its
-// positions are those of a speed which is half a step's pull ahead.
-static double rebound(double restitution, double depth, double speed, double pull, double h) {
-    double inside = speed + 0.5 * pull * h, surface_squared = fmax(0, inside * inside - 2 * pull * depth);
-    return sqrt(fmax(0, restitution * restitution * surface_squared + 2 * pull * depth)) - 0.5 * pull * h;
-}
-
 // The speed along the normal that the joint asks for. ODE's own bounce adds what it corrects of the depth, and gains
 // energy by it. An impact is answered once it is inside; without restitution it stops at the surface. What cannot be
 // told from rest, 2·g·h, rests.
 static double wanted_speed(const ck_Collider *collider, double gap, double speed, double rest, double pull, double h) {
     if (gap >= 0) return -gap / h;
-    if (speed < -rest && collider->restitution > 0) return rebound(collider->restitution, -gap, -speed, pull, h);
+    if (speed < -rest && collider->restitution > 0) return ck_collider_rebound(collider->restitution, -gap, -speed, pull, h);
     return fmin(PUSH_SHARE * -gap / h, PUSH_SPEED);
 }
 

@@ -79,3 +79,9 @@ double ck_collider_hit(const ck_Collider *collider, const double *x, const doubl
     double gap = ck_collider_gap(collider, x, normal);
     return hit_plane(gap, ck_dot(v, normal), ck_dot(a, normal), duration, slack);
 }
+
+double ck_collider_rebound(double restitution, double depth, double speed, double pull, double dt) {
+    double now = speed + 0.5 * pull * dt, surface_squared = fmax(0, now * now - 2 * pull * depth);
+    double after_squared = restitution * restitution * surface_squared + 2 * pull * depth;
+    return fmax(0, sqrt(fmax(0, after_squared)) - 0.5 * pull * dt);
+}

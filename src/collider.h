@@ -17,6 +17,13 @@ double ck_collider_gap(const ck_Collider *collider, const double *point, double 
 double ck_collider_hit(const ck_Collider *collider, const double *x, const double *v, const double *a, double duration,
                        double slack);
 
+// For solvers that step by their last speed, and whose positions are therefore those of a speed half a step's pull
+// ahead: the speed, in m/s, to give a particle for its next step so that it leaves the surface with e times the speed
+// that it meets it with.
+//   depth  m, inside; negative: it is still outside;  speed  m/s, into the collider;  pull  m/s², of the field into it
+// Exact in a uniform field. 0 where it would not get off the surface.
+double ck_collider_rebound(double restitution, double depth, double speed, double pull, double dt);
+
 #ifdef __cplusplus
 }
 #endif

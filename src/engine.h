@@ -23,6 +23,7 @@ typedef enum ck_Method {
     CK_METHOD_XPBD,              // symplectic Euler prediction, compliant position constraints
     CK_METHOD_BULLET_PBD,        // symplectic Euler prediction, Bullet's link projection
     CK_METHOD_IMPLICIT_EULER,    // backward Euler, Newton
+    CK_METHOD_SYMPLECTIC_EULER,  // explicit springs, implicit damping
     CK_METHOD_SEMI_IMPLICIT_ODE, // velocity constraints along directions frozen at the start of the step
 } ck_Method;
 

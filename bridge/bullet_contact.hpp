@@ -1,0 +1,31 @@
+// Colliders as Bullet's static bodies, and the restitution and Coulomb friction that its soft bodies lack.
+#ifndef CK_BULLET_CONTACT_HPP
+#define CK_BULLET_CONTACT_HPP
+
+#include "bullet_body.hpp"
+
+#include <btBulletDynamicsCommon.h>
+
+class ck_BulletColliders {
+  public:
+    // Adds a body for each collider to a world and sets the soft body's margin and the grid of its distances. A plane
+    // is a big box (Bullet's static plane lets soft bodies through), a ball shrinks and a plane sinks by the margin, at
+    // which Bullet lets nodes rest.
+    void add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info);
+    // Takes them out again: the world owns nothing.
+    void remove(btDiscreteDynamicsWorld &world);
+
+    // The collider that a contact is with.
+    static const ck_Collider &of(const ck_Model *model, const btCollisionObject *object) {
+        return model->colliders[object->getUserIndex()];
+    }
+
+  private:
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+};
+
+// The field's acceleration of a node, m/s².
+btVector3 ck_bullet_field(const ck_BulletBody &body, int particle);
+
+#endif
