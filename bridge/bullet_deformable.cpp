@@ -97,12 +97,15 @@ struct DeformableState {
 };
 
 // Time step: backward Euler is stable at any, and its damping is first order: at most 1/240 s. The explicit world is
-// stable to 2/ω; half of that, so that a cloth that folds stays inside.
+// stable to 2/ω; half of that, so that a cloth that folds stays inside. In contact k·dt²/m ≤ 1 (k·dt²·W ≤ 2): a cloth
+// dropped on a ball gains energy at 3.5, and does not at 0.9.
 ck_Status time_step_limit(const ck_Model *model, bool is_implicit, double *limit) {
     *limit = 1.0 / 240;
     double frequency = 0;
     ck_Status status = is_implicit ? CK_OK : ck_stability_frequency(model, &frequency);
     if (frequency > 0) *limit = btMin(*limit, 1 / frequency);
+    double rate = ck_stability_stiffness_rate(model);
+    if (model->collider_count && rate > 0) *limit = btMin(*limit, btSqrt(2 / rate));
     return status;
 }
 

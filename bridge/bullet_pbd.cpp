@@ -47,6 +47,14 @@ struct Surroundings {
     World world{&dispatcher, &broadphase, &constraint_solver, &configuration, &solver};
 };
 
+// What is left to do for a node in contact once links and contacts are solved, which leaves it without normal motion.
+struct Landing {
+    btSoftBody::Node *node;
+    btVector3 normal;
+    double shift, leaving; // m and m/s along the normal
+    double incoming;       // m/s against it
+};
+
 // Without colliders there are no surroundings.
 struct Classic {
     btSoftBodyWorldInfo info;
@@ -54,6 +62,7 @@ struct Classic {
     ck_BulletBody body;
     std::vector<double> kappa_over_weight; // of each link: κ/(w_a + w_b)
     std::vector<btVector3> field_force;    // N on each node
+    std::vector<Landing> landings;         // of this substep
 
     ~Classic() {
         if (!around) return;
@@ -115,32 +124,55 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
                                "1 - 1/(1 + drag*dt)", CK_APPROXIMATE});
 }
 
-// Share of a depth that is pushed out in a step, and the most speed that this may give, m/s: more would bounce.
-const double push_share = 0.2, push_speed = 0.1;
+// Share of a depth that is pushed out in a step: without speed, so that nothing bounces by it.
+const double push_share = 0.2;
 
-// How far a node is to end above where it started the step, m, once its way into the surface is taken from it.
-double lift_of(const ck_Collider &collider, double gap, double way_in, double pull, double dt) {
-    if (way_in > 2 * std::fabs(pull) * dt * dt && collider.restitution > 0)
-        return dt * ck_collider_rebound(collider.restitution, -gap, way_in / dt - pull * dt, pull, dt);
-    // down to the surface, or slowly out of it
-    return gap >= 0 ? -gap : std::fmin(push_share * -gap, push_speed * dt);
+// What a node does after meeting the surface from a gap, at way_in m in this step: rebounds, goes down to the surface,
+// or slowly out of it.
+Landing land(const ck_Collider &collider, double gap, double way_in, double pull, double dt) {
+    Landing landing = {};
+    landing.incoming = way_in / dt;
+    if (way_in > 2 * std::fabs(pull) * dt * dt && collider.restitution > 0) {
+        landing.leaving = ck_collider_rebound(collider.restitution, -gap, way_in / dt - pull * dt, pull, dt);
+        landing.shift = dt * landing.leaving;
+    } else {
+        landing.shift = gap >= 0 ? -gap : push_share * -gap;
+    }
+    return landing;
 }
 
-// After detection, before links and contacts are solved: restitution, which Bullet lacks, and Coulomb's cone in place
-// of a share of the speed. Bullet removes n·(way) + (1 − c3)·(slip) and adds c4 times the depth.
+// After detection, before links and contacts are solved: Coulomb's cone in place of a share of the speed, and nothing
+// of Bullet's hardness, which would answer to what links do to the node. Bullet then removes n·way + (1 − c3)·slip.
 void edit_contacts(btDynamicsWorld *world, btScalar dt) {
-    const ck_BulletBody &body = *static_cast<ck_BulletBody *>(world->getWorldUserInfo());
+    Classic &state = *static_cast<Classic *>(world->getWorldUserInfo());
+    const ck_BulletBody &body = state.body;
+    state.landings.clear();
     for (int i = 0; i < body.soft->m_rcontacts.size(); i++) {
         btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
         const ck_Collider &collider = ck_BulletColliders::of(body.model, contact.m_cti.m_colObj);
         const btVector3 &normal = contact.m_cti.m_normal;
         btVector3 way = contact.m_node->m_x - contact.m_node->m_q;
         double way_in = -way.dot(normal), slip = (way + normal * way_in).length();
-        double gap = contact.m_node->m_q.dot(normal) + contact.m_cti.m_offset, depth = way_in - gap;
+        double gap = contact.m_node->m_q.dot(normal) + contact.m_cti.m_offset;
         double pull = -ck_bullet_field(body, body.particle_of_node[contact.m_node->index]).dot(normal);
-        double lift = lift_of(collider, gap, way_in, pull, dt), push = std::fmax(0, way_in + lift);
+        Landing landing = land(collider, gap, way_in, pull, dt);
+        landing.node = contact.m_node;
+        landing.normal = normal;
+        state.landings.push_back(landing);
+        double push = std::fmax(0, way_in) + dt * landing.leaving;
         contact.m_c3 = slip > 0 ? 1 - std::fmin(1, collider.friction * push / slip) : 0;
-        contact.m_c4 = depth > 0 ? lift / depth : 0;
+        contact.m_c4 = 0;
+    }
+}
+
+// Restitution, which Bullet lacks, and the way to the surface.
+void finish_landings(Classic &state) {
+    for (const Landing &landing : state.landings) {
+        btSoftBody::Node &node = *landing.node;
+        // links may have pulled it off
+        if (node.m_v.dot(landing.normal) > 1e-6 * landing.incoming) continue;
+        node.m_x += landing.normal * landing.shift;
+        node.m_v += landing.normal * landing.leaving;
     }
 }
 
@@ -151,7 +183,7 @@ void surround(Classic &state) {
     state.info.m_broadphase = &state.around->broadphase;
     state.info.m_dispatcher = &state.around->dispatcher;
     state.around->colliders.add(world, state.body, state.info);
-    world.setInternalTickCallback(edit_contacts, &state.body);
+    world.setInternalTickCallback(edit_contacts, &state);
     btSoftBody &soft = *state.body.soft;
     soft.m_cfg.collisions = btSoftBody::fCollision::SDF_RS;
     soft.setActivationState(DISABLE_DEACTIVATION);
@@ -218,6 +250,7 @@ ck_StepResult step(void *out) {
             for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force[node], node);
         if (state.around) {
             state.around->world.step_once(state.body.dt);
+            finish_landings(state);
             continue;
         }
         soft.predictMotion(state.body.dt);
