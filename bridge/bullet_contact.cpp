@@ -2,8 +2,7 @@
 
 #include "vector.h"
 
-// How thick a soft body is to Bullet, m: a tenth of what it is made of and of what it touches.
-static double margin_of(const ck_Model *model) {
+double ck_bullet_margin(const ck_Model *model) {
     double margin = btMin(0.01, 0.1 * model->spacing);
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].shape == CK_SPHERE) margin = btMin(margin, 0.1 * model->colliders[i].radius);
@@ -32,7 +31,7 @@ static btTransform place_plane(const ck_Collider &collider, double reach, double
 void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info) {
     const ck_Model *model = body.model;
     if (!model->collider_count) return;
-    double margin = margin_of(model), voxel = 0.25;
+    double margin = ck_bullet_margin(model), voxel = 0.25;
     body.soft->getCollisionShape()->setMargin(margin);
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider &collider = model->colliders[i];

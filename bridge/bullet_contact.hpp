@@ -25,6 +25,9 @@ class ck_BulletColliders {
     std::vector<std::unique_ptr<btRigidBody>> bodies;
 };
 
+// How thick a soft body is to Bullet, m: a tenth of what it is made of and of what it touches.
+double ck_bullet_margin(const ck_Model *model);
+
 // The field's acceleration of a node, m/s².
 btVector3 ck_bullet_field(const ck_BulletBody &body, int particle);
 

@@ -109,6 +109,22 @@ ck_Status time_step_limit(const ck_Model *model, bool is_implicit, double *limit
     return status;
 }
 
+// The explicit world clamps speeds to the body's bounding box, margins and all, per step.
+void ledger_speed(const ck_Model *model, const ck_Settings &used, ck_Ledger *ledger) {
+    btVector3 low(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT), high = -low;
+    double fastest = 0, margin = model->collider_count ? ck_bullet_margin(model) : 0.25;
+    for (int i = 0; i < model->particle_count; i++) {
+        const double *at = model->position + 3 * i, *speed = model->velocity + 3 * i;
+        low.setMin(btVector3(at[0], at[1], at[2]));
+        high.setMax(btVector3(at[0], at[1], at[2]));
+        fastest = btMax(fastest, btVector3(speed[0], speed[1], speed[2]).length());
+    }
+    double limit = (high - low + btVector3(2, 2, 2) * margin).length() * used.substeps / model->step;
+    ck_ledger_add(ledger,
+                  {"start velocity", fastest, "m/s", "Node::m_v", btMin(fastest, limit),
+                   "Bullet clamps speed to bounding box diagonal / dt", fastest <= limit ? CK_EXACT : CK_IMPOSSIBLE});
+}
+
 ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                     bool is_implicit) {
     double limit;
@@ -127,6 +143,7 @@ ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Setting
                 {ck_stiffness_names[kind], spring->stiffness, "N/m", "btDeformableLagrangianForce", spring->stiffness,
                  is_implicit ? "k per link; (1 - L/l) clamped at 0 in the differential" : "k per link", CK_EXACT});
     }
+    if (!is_implicit && (model->terms & CK_TERM_VELOCITY)) ledger_speed(model, *used, ledger);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, {"spring damping", model->springs[0].damping, "N*s/m", "btDeformableLagrangianForce",
                                model->springs[0].damping, "c along the link", CK_EXACT});

@@ -1,6 +1,7 @@
 #include "metric_contact.h"
 
 #include "collider.h"
+#include "truth_forms.h"
 #include "vector.h"
 
 #include <string.h>
@@ -101,6 +102,54 @@ double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *traje
     // one that sticks tells nothing but that μ is enough
     if (!(way > 1e-2 * model->spacing)) return NAN;
     return ((first * first - last * last) / (2 * way) + ck_dot(drive, line)) / press;
+}
+
+// Distance of a point from the line between two others, m.
+static double distance_to_line(const double *point, const double *from, const double *to) {
+    double line[3], at[3];
+    ck_subtract(line, to, from);
+    ck_subtract(at, point, from);
+    double length_squared = ck_dot(line, line);
+    double share = length_squared > 0 ? fmin(1, fmax(0, ck_dot(at, line) / length_squared)) : 0;
+    ck_add_scaled(at, -share, line);
+    return ck_length(at);
+}
+
+double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+    (void)reference;
+    int balls = 0, passed = 0;
+    for (int j = 0; j < model->collider_count; j++) balls += model->colliders[j].shape == CK_SPHERE;
+    for (int i = 0; i < model->particle_count && balls; i++) {
+        bool through = false;
+        for (int frame = 0; frame + 1 < trajectory->frame_count && !through; frame++)
+            for (int j = 0; j < model->collider_count; j++)
+                through |=
+                    model->colliders[j].shape == CK_SPHERE &&
+                    distance_to_line(model->colliders[j].point, ck_trajectory_position(trajectory, frame) + 3 * i,
+                                     ck_trajectory_position(trajectory, frame + 1) + 3 * i) <
+                        0.5 * model->colliders[j].radius;
+        passed += through;
+    }
+    return balls ? (double)passed / model->particle_count : NAN;
+}
+
+double ck_metric_wrap_friction_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                    const ck_Reference *reference) {
+    (void)reference;
+    int last = model->particle_count - 1, end = trajectory->frame_count - 1;
+    bool fits = ck_truth_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
+                !model->pin_count && last > 1;
+    double field[3], first[3], other[3], way[3], time = end * trajectory->step;
+    ck_model_mean_field(model, field);
+    double g = ck_length(field);
+    if (!fits || !(g > 0)) return NAN;
+    ck_subtract(first, model->position + 3, model->position);
+    ck_subtract(other, model->position + 3 * last, model->position + 3 * last - 3);
+    double angle = acos(fmax(-1, fmin(1, ck_dot(first, other) / ck_length(first) / ck_length(other))));
+    ck_subtract(way, ck_trajectory_position(trajectory, end), model->position);
+    double a = -2 * ck_dot(way, field) / g / (time * time);
+    double tension = model->mass[0] * (g + a), far_tension = model->mass[last] * (g - a);
+    return angle > 0.1 && tension > 0 && far_tension > 0 ? log(far_tension / tension) / angle : NAN;
 }
 
 double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *trajectory,

@@ -23,6 +23,15 @@ double ck_metric_restitution_over(const ck_Model *model, const ck_Trajectory *tr
 // [(v_0² − v_1²)/(2·s) + g_t]/g_n.
 double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
 
+// The share of particles that have passed through a ball: that came nearer to its centre than half its radius, on the
+// straight line from frame to frame.
+double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
+
+// ln(T_2/T_1)/φ of a rope over a ball, from how far its first particle has come: both ends' weights m·(g ± a), φ the
+// angle between its ends.
+double ck_metric_wrap_friction_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                    const ck_Reference *reference);
+
 // The force of the colliders against the field over the last twentieth of the run / weight; NaN where pins carry some
 // of it, and where the engine does not tell.
 double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *trajectory,

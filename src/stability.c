@@ -69,7 +69,7 @@ double ck_stability_stiffness_rate(const ck_Model *model) {
 
 double ck_stability_load(const ck_Model *model) {
     double load = 0;
-    for (int i = 0; i < model->particle_count && model->pin_count; i++) {
+    for (int i = 0; i < model->particle_count && (model->pin_count || model->collider_count); i++) {
         double field[3];
         ck_model_field(model, i, field);
         if (!model->pinned[i]) load += model->mass[i] * ck_length(field);

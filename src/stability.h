@@ -19,7 +19,7 @@ double ck_stability_damping_time(const ck_Model *model);
 // The largest k·(w_a + w_b) of its springs, in 1/s²: a = that·dt² is what position-based methods scale with.
 double ck_stability_stiffness_rate(const ck_Model *model);
 
-// The sum of |gravity·m + force| over particles that are not pinned, in N; 0 without pins.
+// The sum of |gravity·m + force| over particles that are not pinned, in N; 0 without pins and colliders.
 // No spring of a hanging body carries much more than this at rest.
 double ck_stability_load(const ck_Model *model);
 

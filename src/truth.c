@@ -46,6 +46,10 @@ static const ck_TruthForm forms[] = {
     {"sphere_slide", CLOSED,
      "theta'' = (g/R)*sin(theta) up to cos(theta) = 2/3*cos(theta_0) + v_0^2/(3*g*R), then falls", false,
      .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide},
+    {"strike", CLOSED, "comes back at e times the speed it came with", false, .terms = CK_TERM_PLANE | CK_TERM_SPHERE,
+     .at = ck_truth_strike},
+    {"capstan", CLOSED, "rope over a ball: dT/dtheta = mu*(T + l*R*g*sin - l*v^2) + l*R*(a + g*cos); light: e^(mu*pi)",
+     false, .terms = CK_TERM_SPHERE, .at = ck_truth_capstan, .off = ck_truth_capstan_off},
 };
 
 int ck_truth_count(void) {

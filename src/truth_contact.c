@@ -209,3 +209,18 @@ ck_Status ck_truth_sphere_slide(const ck_Model *model, double time, double *posi
     }
     return CK_OK;
 }
+
+ck_Status ck_truth_strike(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
+    bool fits = model->particle_count == 1 && model->collider_count == 1 &&
+                !(model->terms & (CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG)) && !model->pin_count;
+    double normal[3], gap = fits ? ck_collider_gap(&model->colliders[0], model->position, normal) : 0;
+    double speed = ck_length(model->velocity);
+    fits = fits && gap >= 0 && speed > 0 && -ck_dot(model->velocity, normal) >= speed * (1 - 1e-12);
+    ck_Status status = ck_truth_need(fits, model, error, "one particle that flies straight at one collider, no field");
+    if (status) return status;
+    double hit = gap / speed, back = model->colliders[0].restitution * speed, way[3] = {0}, rate[3] = {0};
+    ck_add_scaled(way, time < hit ? -speed * time : back * (time - hit) - gap, normal);
+    ck_add_scaled(rate, time < hit ? -speed : back, normal);
+    move_all(model, way, rate, position, velocity);
+    return CK_OK;
+}
