@@ -133,6 +133,12 @@ static void velocity_verlet(Oscillator *o) {
     o->v += 0.5 * o->dt * (a + o->a);
 }
 
+// m·v' = m·v − dt·(k·u + c·v'), u' = u + dt·v'.
+static void symplectic_euler(Oscillator *o) {
+    o->v = (o->m * o->v - o->dt * o->k * o->u) / (o->m + o->dt * o->c);
+    o->u += o->dt * o->v;
+}
+
 // Bullet's link answers an error x − L with f(x) = x·(x² − L²)/(x² + L²), and the bridge divides it by
 // h(l) = l·(l + L)/(l² + L²) of the length before the step, so that f/h is Hooke's l − L where both lengths agree.
 static double bullet_error(double x, double l, double rest) {
@@ -190,6 +196,11 @@ static bool oscillate_verlet(const ck_Model *model, const ck_Settings *used, dou
 static bool oscillate_backward(const ck_Model *model, const ck_Settings *used, double time, double *position,
                                double *velocity) {
     return oscillate(model, used, time, position, velocity, backward_euler);
+}
+
+static bool oscillate_symplectic(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                                 double *velocity) {
+    return oscillate(model, used, time, position, velocity, symplectic_euler);
 }
 
 static bool oscillate_bullet_link(const ck_Model *model, const ck_Settings *used, double time, double *position,
@@ -280,7 +291,9 @@ static bool hang_bullet(const ck_Model *model, const ck_Settings *used, double t
 // True where the method's forces balance at rest: it steps by them, or solves for the end of the step. QuickStep's
 // iterations do so to 1e-9 at 50 of them and k·h²·W ≤ 10; a bar's residual softness (CFM) is no truth.
 static bool balances_forces(const ck_Model *model, ck_Method method, const ck_Settings *used) {
-    if (method == CK_METHOD_VELOCITY_VERLET || method == CK_METHOD_IMPLICIT_EULER) return true;
+    if (method == CK_METHOD_VELOCITY_VERLET || method == CK_METHOD_IMPLICIT_EULER ||
+        method == CK_METHOD_SYMPLECTIC_EULER)
+        return true;
     double dt = time_step(model, used);
     bool converged =
         !used->iterations || (used->iterations >= 50 && ck_stability_stiffness_rate(model) * dt * dt <= 10);
@@ -305,23 +318,27 @@ static const Theory theories[] = {
     {CK_METHOD_XPBD, "free_fall", fall_ahead},
     {CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
     {CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
+    {CK_METHOD_SYMPLECTIC_EULER, "free_fall", fall_ahead},
     {CK_METHOD_SEMI_IMPLICIT_ODE, "free_fall", fall_ahead},
     {CK_METHOD_VELOCITY_VERLET, "terminal_speed", drag_verlet},
     {CK_METHOD_STOERMER_BARS, "terminal_speed", drag_leapfrog},
     {CK_METHOD_XPBD, "terminal_speed", drag_then_damp},
     {CK_METHOD_BULLET_PBD, "terminal_speed", drag_then_damp},
     {CK_METHOD_IMPLICIT_EULER, "terminal_speed", drag_damp_first},
+    {CK_METHOD_SYMPLECTIC_EULER, "terminal_speed", drag_damp_first},
     {CK_METHOD_SEMI_IMPLICIT_ODE, "terminal_speed", drag_then_scale},
     {CK_METHOD_VELOCITY_VERLET, "oscillator", oscillate_verlet},
     {CK_METHOD_XPBD, "oscillator", oscillate_backward},
     {CK_METHOD_BULLET_PBD, "oscillator", oscillate_bullet_link},
     {CK_METHOD_IMPLICIT_EULER, "oscillator", oscillate_backward},
+    {CK_METHOD_SYMPLECTIC_EULER, "oscillator", oscillate_symplectic},
     {CK_METHOD_SEMI_IMPLICIT_ODE, "oscillator", oscillate_backward},
     {CK_METHOD_VELOCITY_VERLET, "vertical_chain", hang_exactly},
     {CK_METHOD_STOERMER_BARS, "vertical_chain", hang_bars},
     {CK_METHOD_XPBD, "vertical_chain", hang_xpbd},
     {CK_METHOD_BULLET_PBD, "vertical_chain", hang_bullet},
     {CK_METHOD_IMPLICIT_EULER, "vertical_chain", hang_exactly},
+    {CK_METHOD_SYMPLECTIC_EULER, "vertical_chain", hang_exactly},
     {CK_METHOD_SEMI_IMPLICIT_ODE, "vertical_chain", hang_ode},
 };
 
