@@ -11,7 +11,7 @@
 const char ck_arguments_help[] =
     "  --out DIR            write the CSVs into DIR\n"
     "  --engine NAME        run this engine only; may be given several times\n"
-    "  --set ENGINE.KEY=N   substeps, iterations or relaxation of an engine, over the scene's own\n"
+    "  --set ENGINE.KEY=N   substeps, iterations, relaxation or mended of an engine, over the scene's own\n"
     "  --repeats N          timed repeats, 0 to 99 (usually 5)\n"
     "  --budget S           CPU seconds per timed repeat at most (usually 2)\n"
     "  --time-limit S       wall seconds that one run may take (usually 900)\n"
@@ -85,12 +85,14 @@ static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Erro
         override->settings.substeps = (uint32_t)number;
     else if (!strcmp(key, "iterations") && whole)
         override->settings.iterations = (uint32_t)number;
+    else if (!strcmp(key, "mended") && whole)
+        override->settings.mended = (uint32_t)number;
     else if (!strcmp(key, "relaxation"))
         override->settings.relaxation = number;
     else
-        return ck_fail(error, CK_BAD_INPUT,
-                       "--set %s: the key must be substeps or iterations, which are whole numbers, or relaxation",
-                       text);
+        return ck_fail(
+            error, CK_BAD_INPUT,
+            "--set %s: the key must be substeps, iterations or mended, which are whole numbers, or relaxation", text);
     return CK_OK;
 }
 

@@ -56,6 +56,7 @@ static ck_Settings settings_of(const ck_Engine *engine, const ck_Model *model, c
         if (override->engine != engine) continue;
         if (override->settings.substeps) settings.substeps = override->settings.substeps;
         if (override->settings.iterations) settings.iterations = override->settings.iterations;
+        if (override->settings.mended) settings.mended = override->settings.mended;
         if (override->settings.relaxation > 0) settings.relaxation = override->settings.relaxation;
     }
     return settings;

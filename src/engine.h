@@ -24,6 +24,7 @@ typedef enum ck_Method {
     CK_METHOD_BULLET_PBD,        // symplectic Euler prediction, Bullet's link projection
     CK_METHOD_IMPLICIT_EULER,    // backward Euler, Newton
     CK_METHOD_SYMPLECTIC_EULER,  // explicit springs, implicit damping
+    CK_METHOD_SEED,              // an origin, with its quirks
     CK_METHOD_SEMI_IMPLICIT_ODE, // velocity constraints along directions frozen at the start of the step
 } ck_Method;
 

@@ -10,6 +10,7 @@ static const ck_Command commands[] = {
     {"list", "", "engines, scenes, metrics and truths", ck_command_list},
     {"run", "SCENE", "one scene, chosen engines: summary and ledger; CSVs with --out", ck_command_run},
     {"compare", "[SCENE...]", "all engines on all scenes: the six CSVs of a comparison", ck_command_compare},
+    {"claims", "", "what was claimed of the two origins, and what their quirks cost", ck_command_claims},
 };
 #define COMMANDS (sizeof commands / sizeof *commands)
 

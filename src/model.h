@@ -66,6 +66,7 @@ typedef struct ck_Model {
     char *name;
     ck_Body body;
     int particle_count;
+    int columns;      // of a cloth: particle = row*columns + column; else 0
     double *position; // [3*n] m at the start
     double *velocity; // [3*n] m/s at the start, 0 where pinned
     double *mass;     // [n] kg

@@ -116,6 +116,7 @@ static ck_Status build_cloth(ck_Model *model, const ck_Scene *scene, ck_Error *e
         model->mass[i] = cloth->mass / particles;
     }
     model->body = CK_CLOTH;
+    model->columns = (int)cloth->columns;
     model->spacing = cloth->spacing;
     model->size = cloth->spacing * fmax(1, fmax(cloth->rows, cloth->columns) - 1);
     if (scene->file->springs) add_cloth_springs(model, cloth, scene->file->springs);

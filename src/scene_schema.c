@@ -36,6 +36,7 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"*.substeps", CK_RANGE_SETTING},
     {"*.iterations", CK_RANGE_SETTING},
     {"*.relaxation", CK_RANGE_SETTING},
+    {"*.mended", CK_RANGE_SETTING},
     {NULL, CK_RANGE_FINITE},
 };
 
@@ -138,6 +139,7 @@ static const cyaml_schema_field_t engine_fields[] = {
     CYAML_FIELD_UINT("substeps", OPTIONAL, ck_Settings, substeps),
     CYAML_FIELD_UINT("iterations", OPTIONAL, ck_Settings, iterations),
     CYAML_FIELD_FLOAT("relaxation", OPTIONAL, ck_Settings, relaxation),
+    CYAML_FIELD_UINT("mended", OPTIONAL, ck_Settings, mended),
     CYAML_FIELD_END,
 };
 

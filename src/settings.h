@@ -8,6 +8,7 @@ typedef struct ck_Settings {
     uint32_t substeps;   // steps of the engine per frame (time.step of the scene)
     uint32_t iterations; // solver iterations per substep, where the method has them
     double relaxation;   // over-relaxation of an iterative solver, usually 1 … 1.5
+    uint32_t mended;     // quirks of an origin to leave out, bits as `clothcheck list` counts them
 } ck_Settings;
 
 #endif

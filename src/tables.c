@@ -55,6 +55,7 @@ static void write_command(char *out, size_t size, const ck_Comparison *compariso
         used = add_setting(out, size, used, engine, "substeps", override->settings.substeps);
         used = add_setting(out, size, used, engine, "iterations", override->settings.iterations);
         used = add_setting(out, size, used, engine, "relaxation", override->settings.relaxation);
+        used = add_setting(out, size, used, engine, "mended", override->settings.mended);
     }
 }
 
