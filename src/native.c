@@ -70,6 +70,12 @@ void ck_native_start_frame(ck_Native *native) {
     if (native->contact) memset(native->contact->impulse, 0, sizeof native->contact->impulse);
 }
 
+void ck_native_start_substep(ck_Native *native) {
+    size_t bytes = 3 * sizeof(double) * (size_t)native->model->particle_count;
+    memcpy(native->start, native->position, bytes);
+    if (native->contact) memcpy(native->origin, native->start, bytes);
+}
+
 void ck_native_release(void *state, int particle) {
     ck_Native *native = state;
     native->inverse_mass[particle] = 1 / native->model->mass[particle];
@@ -83,7 +89,6 @@ void ck_native_contact(const void *state, double *force) {
 
 void ck_native_move(ck_Native *native, int particle, const double *next, const double *field) {
     double *x = native->position + 3 * particle, *origin = native->origin + 3 * particle, v[3];
-    memcpy(origin, native->start + 3 * particle, 3 * sizeof(double));
     // the mean velocity stands in the middle of the substep: half of it earlier is the start
     memcpy(v, next, sizeof v);
     ck_add_scaled(v, -0.5 * native->dt, field);

@@ -36,6 +36,9 @@ void ck_native_read(const void *state, double *position, double *velocity);
 // Forgets the contact force of the frame before.
 void ck_native_start_frame(ck_Native *native);
 
+// Notes the positions at the start of a substep.
+void ck_native_start_substep(ck_Native *native);
+
 // Lets a pinned particle go, at rest.
 void ck_native_release(void *state, int particle);
 
@@ -43,7 +46,7 @@ void ck_native_release(void *state, int particle);
 void ck_native_contact(const void *state, double *force);
 
 // For position-based methods: moves a particle by one substep at the mean velocity next of that substep, [3] m/s, or
-// over the impacts on its way, where field, [3] m/s², acts in between. Sets its origin.
+// over the impacts on its way, where field, [3] m/s², acts in between; these also set its origin.
 void ck_native_move(ck_Native *native, int particle, const double *next, const double *field);
 
 // Moves every particle that is inside a collider out of it, with friction. Nothing without colliders.

@@ -38,7 +38,7 @@ static void sweep(ck_Native *native) {
 static void substep(ck_Native *native) {
     const ck_Model *model = native->model;
     const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
-    memcpy(native->start, native->position, 3 * sizeof(double) * (size_t)model->particle_count);
+    ck_native_start_substep(native);
     memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
@@ -76,7 +76,10 @@ static double time_step_limit(const ck_Model *model, uint32_t iterations) {
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
-    *used = (ck_Settings){.substeps = wanted->substeps, .iterations = wanted->iterations ? wanted->iterations : 1};
+    *used = (ck_Settings){.substeps = wanted->substeps,
+                          .iterations = wanted->iterations             ? wanted->iterations
+                                        : model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model)
+                                                                       : 1};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
     double dt = model->step / used->substeps;
     ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);

@@ -104,3 +104,10 @@ uint32_t ck_stability_substeps(const ck_Model *model, double limit) {
     double count = ceil(model->step / limit * (1 - 1e-12));
     return (uint32_t)fmax(1, fmin(count, 100000));
 }
+
+uint32_t ck_stability_sweeps(const ck_Model *model) {
+    int bars = 0;
+    for (int i = 0; i < model->spring_count; i++)
+        bars += !(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]);
+    return bars > 3 * (model->particle_count - model->pin_count) ? 4 : 1;
+}

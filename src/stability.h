@@ -34,6 +34,11 @@ double ck_stability_lightness(const ck_Model *model);
 // load·w·dt²/iterations; at most 1/240 s. Substeps act squared where iterations act once.
 double ck_stability_bar_time(const ck_Model *model, uint32_t iterations);
 
+// How many sweeps rigid bars want in a substep: one, as substeps act squared where sweeps act once; but four where bars
+// outnumber the freedoms they act on. One sweep leaves such a sheet shaking for ever: on a 24×24 curtain jitter falls
+// from 1.4 to 0.005 g.
+uint32_t ck_stability_sweeps(const ck_Model *model);
+
 // The longest step, in s, in which drag takes no more than share of a speed; INFINITY without drag.
 double ck_stability_drag_time(const ck_Model *model, double share);
 
