@@ -31,11 +31,15 @@ typedef struct Path {
     const double *x, *v, *a;
 } Path;
 
-static double gap_at(const ck_Collider *collider, const Path *path, double time) {
-    double point[3], normal[3];
-    memcpy(point, path->x, sizeof point);
+static void point_at(double *point, const Path *path, double time) {
+    memcpy(point, path->x, 3 * sizeof(double));
     ck_add_scaled(point, time, path->v);
     ck_add_scaled(point, 0.5 * time * time, path->a);
+}
+
+static double gap_at(const ck_Collider *collider, const Path *path, double time) {
+    double point[3], normal[3];
+    point_at(point, path, time);
     return ck_collider_gap(collider, point, normal);
 }
 
@@ -51,25 +55,32 @@ static double bisect(const ck_Collider *collider, const Path *path, double outsi
     }
 }
 
+// When the chord of a path between two times comes closest to the ball's centre.
+static double closest_time(const ck_Collider *collider, const Path *path, double from, double to) {
+    double start[3], chord[3], way[3];
+    point_at(start, path, from);
+    point_at(chord, path, to);
+    ck_subtract(chord, chord, start);
+    ck_subtract(way, collider->point, start);
+    double length_squared = ck_dot(chord, chord);
+    double share = length_squared > 0 ? fmax(0, fmin(1, ck_dot(way, chord) / length_squared)) : 1;
+    return from + share * (to - from);
+}
+
 // A parabola meets a ball in up to four points. Within a step it is all but straight: where its chord comes closest it
 // is inside, or it is at the end, or it misses. Error: a parabola that dips in by less than a·duration²/8.
 static double hit_sphere(const ck_Collider *collider, const Path *path, double duration, double slack) {
-    double normal[3], from[3], chord[3] = {0}, gap = ck_collider_gap(collider, path->x, normal), outside = 0;
-    ck_subtract(from, path->x, collider->point);
-    ck_add_scaled(chord, 1, path->v);
-    ck_add_scaled(chord, 0.5 * duration, path->a);
-    double speed_squared = ck_dot(chord, chord), closest = duration;
-    if (speed_squared > 0) closest = fmin(duration, fmax(0, -ck_dot(from, chord) / speed_squared));
-    if (gap <= slack) {
+    double normal[3], outside = 0;
+    if (ck_collider_gap(collider, path->x, normal) <= slack) {
         double v = ck_dot(path->v, normal), a = ck_dot(path->a, normal);
         // it only comes back where it turns within the step
         if (!(v > 0 && a < 0)) return INFINITY;
         outside = fmin(duration, -v / a);
-        closest = duration;
     }
-    if (!(gap_at(collider, path, closest) < 0)) closest = duration;
-    if (!(gap_at(collider, path, closest) < 0)) return INFINITY;
-    return bisect(collider, path, outside, closest);
+    double inside = closest_time(collider, path, outside, duration);
+    if (!(gap_at(collider, path, inside) < 0)) inside = duration;
+    if (!(gap_at(collider, path, inside) < 0)) return INFINITY;
+    return bisect(collider, path, outside, inside);
 }
 
 double ck_collider_hit(const ck_Collider *collider, const double *x, const double *v, const double *a, double duration,

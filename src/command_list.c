@@ -1,4 +1,6 @@
 #include "command.h"
+#include "seed_cloth.h"
+#include "seed_tecido.h"
 
 #include <glob.h>
 #include <stdio.h>
@@ -21,6 +23,11 @@ static void list_scenes(void) {
     globfree(&found);
 }
 
+static void list_quirks(const char *engine, const char *const *names, int count) {
+    printf("\nQuirks of %s, to add up in --set %s.mended=N:\n", engine, engine);
+    for (int i = 0; i < count; i++) printf("  %-16d %s\n", 1 << i, names[i]);
+}
+
 int ck_command_list(int argc, char **argv) {
     if (argc > 1 && !strcmp(argv[1], "--help")) {
         printf("clothcheck list\n\nTells the engines, metrics, truths and the scenes in scenes/.\n");
@@ -31,6 +38,8 @@ int ck_command_list(int argc, char **argv) {
     for (int i = 0; i < ck_engine_count(); i++)
         printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
                ck_engine_at(i)->version());
+    list_quirks("seed-tecido", ck_tecido_quirk_names, CK_TECIDO_QUIRK_COUNT);
+    list_quirks("seed-cloth", ck_cloth_quirk_names, CK_CLOTH_QUIRK_COUNT);
     printf("\nMetrics:\n");
     for (int i = 0; i < ck_metric_count(); i++) printf("  %-16s %s\n", ck_metric_at(i)->name, ck_metric_at(i)->title);
     printf("\nTruths:\n");

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include "collider.h"
 #include "model_body.h"
 #include "scene.h"
 #include "vector.h"
@@ -127,6 +128,22 @@ static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error 
     return status;
 }
 
+// A pin may be inside a collider; what is free there would be thrown out.
+static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    for (int i = 0; i < model->collider_count; i++) {
+        char path[32];
+        snprintf(path, sizeof path, "colliders[%d]", i);
+        for (int j = 0; j < model->particle_count; j++) {
+            double normal[3], gap = ck_collider_gap(&model->colliders[i], model->position + 3 * j, normal);
+            if (!model->pinned[j] && gap < -1e-9 * model->spacing)
+                return ck_scene_fail(scene, path, error,
+                                     "particle %d starts %g m inside this collider; move the body or the collider", j,
+                                     -gap);
+        }
+    }
+    return CK_OK;
+}
+
 static void set_fields(ck_Model *model, const ck_SceneFile *file) {
     if (file->gravity) memcpy(model->gravity, file->gravity, sizeof model->gravity);
     if (file->force) memcpy(model->force, file->force, sizeof model->force);
@@ -176,6 +193,8 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
     if (status) return status;
     ck_model_add_noise(model, scene);
+    status = check_outside(model, scene, error);
+    if (status) return status;
     set_fields(model, scene->file);
     model->terms = terms_in_use(model, scene->file);
     return check_finite(model, scene, error);

@@ -46,3 +46,7 @@ void assert_near(const char *what, double value, double wanted, double tolerance
         fail_msg("%s is %.17g, wanted %.17g within %.3g, off by %.3g", what, value, wanted, tolerance,
                  fabs(value - wanted));
 }
+
+bool fixture_is_solver(const ck_Engine *engine) {
+    return engine->method != CK_METHOD_NONE && engine->method != CK_METHOD_SEED;
+}

@@ -31,6 +31,9 @@ void fixture_run(ck_Trajectory *trajectory, const ck_Model *model, const ck_Engi
 // True where the engine models all that the scene names.
 bool fixture_supports(const ck_Engine *engine, const ck_Model *model);
 
+// True for engines that claim to be right: neither one that does nothing nor an origin with its quirks.
+bool fixture_is_solver(const ck_Engine *engine);
+
 // Fails the test unless |value − wanted| ≤ tolerance, and prints what was compared.
 void assert_near(const char *what, double value, double wanted, double tolerance);
 
