@@ -61,7 +61,7 @@ static const struct {
      ROPE TIME "truth: vertical_chain\ncolliders: [{plane: {point: [0, -3, 0], normal: [0, 1, 0]}}]\n",
      ":5:8:", "knows no plane"},
     {"a bounce without a plane", ROPE TIME "truth: bounce\n", ":5:8:", "above one plane"},
-    {"a quirk that is no number", ROPE TIME "settings: {seed-tecido: {mended: all}}\n", ":5:33:", "must be"},
+    {"a quirk that is no number", ROPE TIME "settings: {seed-tecido: {mended: all}}\n", ":5:34:", "must be"},
     {"pin outside a rope", ROPE TIME "pins: [first, 3]\n",
      ":5:15:", "pin 3 is not on the rope; give first, last, or a number up to 2"},
     {"pin outside a cloth", "name: c\ncloth: {rows: 2, columns: 2, spacing: 1, mass: 1}\npins: [2:0]\n" TIME,
