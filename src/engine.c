@@ -7,8 +7,8 @@
 
 // Adding an engine is one file, one line here and one in engine_list.h.
 static const ck_Engine *const engines[] = {
-    &ck_native_verlet,   &ck_native_bars,     &ck_native_xpbd, &ck_seed_tecido, &ck_seed_cloth,  &ck_bullet_pbd,
-    &ck_bullet_implicit, &ck_bullet_explicit, &ck_ode_quick,   &ck_ode_direct,  &ck_null_engine,
+    &ck_native_verlet, &ck_native_bars,     &ck_native_xpbd,     &ck_native_rope, &ck_seed_tecido, &ck_seed_cloth,
+    &ck_bullet_pbd,    &ck_bullet_implicit, &ck_bullet_explicit, &ck_ode_quick,   &ck_ode_direct,  &ck_null_engine,
 };
 
 ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame) {

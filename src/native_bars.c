@@ -1,9 +1,6 @@
 // Störmer–Verlet with rigid bars, relaxed Gauss–Seidel and mass-weighted.
-//
-// velocity holds the leapfrog velocity half a substep behind the positions, other_velocity the one a substep before
-// that.
 #include "engine_list.h"
-#include "native.h"
+#include "native_leapfrog.h"
 #include "stability.h"
 #include "vector.h"
 
@@ -35,36 +32,12 @@ static void sweep(ck_Native *native) {
     }
 }
 
-// v ← (v·(1 − γ·dt/2) + a·dt)/(1 + γ·dt/2);  x' = x + v·dt;  sweeps;  v ← (x' − x)/dt
-static void substep(ck_Native *native) {
-    const ck_Model *model = native->model;
-    const double dt = native->dt, keep = 1 - 0.5 * model->drag * dt, slow = 1 / (1 + 0.5 * model->drag * dt);
-    const size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
-    ck_native_start_substep(native);
-    memcpy(native->other_velocity, native->velocity, bytes);
-    for (int i = 0; i < model->particle_count; i++) {
-        if (native->inverse_mass[i] == 0) continue;
-        double field[3];
-        ck_model_field(model, i, field);
-        const double *v = native->velocity + 3 * i;
-        if (native->contact) {
-            double next[3], change[3];
-            for (int axis = 0; axis < 3; axis++) {
-                next[axis] = slow * (keep * v[axis] + dt * field[axis]);
-                change[axis] = (next[axis] - v[axis]) / dt;
-            }
-            ck_native_move(native, i, next, change);
-        } else {
-            for (int axis = 0; axis < 3; axis++)
-                native->position[3 * i + axis] += dt * slow * (keep * v[axis] + dt * field[axis]);
-        }
-    }
+static bool relax(ck_Native *native) {
     for (uint32_t i = 0; i < native->iterations; i++) {
         sweep(native);
         ck_native_project(native);
     }
-    for (int i = 0; i < 3 * model->particle_count; i++)
-        native->velocity[i] = (native->position[i] - native->origin[i]) / dt;
+    return true;
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
@@ -73,60 +46,20 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     if (!used->substeps)
         used->substeps = ck_stability_substeps(
             model, fmin(ck_stability_drag_time(model, 0.25), ck_stability_bar_time(model, used->iterations)));
-    ck_native_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)", CK_EXACT);
-    bool rigid = model->terms & CK_TERM_RIGID;
-    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
-        if (spring)
-            ck_ledger_add(ledger,
-                          (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "bar length", spring->rest,
-                                         rigid ? "bar of fixed length" : "a bar does not stretch: k is not modelled",
-                                         rigid ? CK_EXACT : CK_IMPOSSIBLE});
-    }
-    if (model->terms & CK_TERM_DAMPING)
-        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "none", 0,
-                                             "a bar does not stretch: c is not modelled", CK_IMPOSSIBLE});
-}
-
-// Half a step back, v₋½ = v₀ − a·dt/2: else the whole path would be off by a·t·dt/2.
-static void start_leapfrog(ck_Native *native, int particle) {
-    double field[3], *velocity = native->velocity + 3 * particle, *before = native->other_velocity + 3 * particle;
-    ck_model_field(native->model, particle, field);
-    ck_add_scaled(field, -native->model->drag, velocity);
-    if (native->contact) ck_contact_filter(native->contact, native->position + 3 * particle, velocity, field, field);
-    memcpy(before, velocity, 3 * sizeof(double));
-    ck_add_scaled(velocity, -0.5 * native->dt, field);
-    ck_add_scaled(before, -1.5 * native->dt, field);
-}
-
-static void release(void *state, int particle) {
-    ck_native_release(state, particle);
-    start_leapfrog(state, particle);
+    ck_leapfrog_ledger(ledger, model, used);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
-    ck_Status status = ck_native_create((ck_Native **)state, model, used, error);
-    const ck_Native *native = *state;
-    for (int i = 0; i < model->particle_count && !status; i++)
-        if (native->inverse_mass[i] > 0) start_leapfrog(*state, i);
-    return status;
+    return ck_leapfrog_create((ck_Native **)state, model, used, error);
 }
 
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
     ck_native_start_frame(native);
-    for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    for (uint32_t i = 0; i < native->substeps; i++) ck_leapfrog_substep(native, relax);
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
-}
-
-// v(t) = v₋½ + a·dt/2, with the last substep's whole acceleration (v₋½ − v₋₁½)/dt
-static void read_state(const void *state, double *position, double *velocity) {
-    const ck_Native *native = state;
-    memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
-    for (int i = 0; i < 3 * native->model->particle_count; i++)
-        velocity[i] = native->velocity[i] + 0.5 * (native->velocity[i] - native->other_velocity[i]);
 }
 
 const ck_Engine ck_native_bars = {
@@ -139,8 +72,8 @@ const ck_Engine ck_native_bars = {
     .order = 0,
     .create = create,
     .step = step,
-    .read = read_state,
-    .release = release,
+    .read = ck_leapfrog_read,
+    .release = ck_leapfrog_release,
     .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

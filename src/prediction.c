@@ -277,6 +277,18 @@ static bool hang_bars(const ck_Model *model, const ck_Settings *used, double tim
            hang(model, used, eased, position, velocity, bar_stretch);
 }
 
+// All constraints at once: nothing stretches.
+static double no_stretch(const Link *link) {
+    (void)link;
+    return 0;
+}
+
+static bool hang_direct(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                        double *velocity) {
+    (void)time;
+    return hang(model, &(ck_Settings){used->substeps, 1, 0, 0}, 1, position, velocity, no_stretch);
+}
+
 static bool hang_xpbd(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {
     (void)time;
     return hang(model, used, 1, position, velocity, xpbd_stretch);
@@ -315,6 +327,7 @@ static bool hang_ode(const ck_Model *model, const ck_Settings *used, double time
 static const Theory theories[] = {
     {CK_METHOD_VELOCITY_VERLET, "free_fall", fall_exactly},
     {CK_METHOD_STOERMER_BARS, "free_fall", fall_exactly},
+    {CK_METHOD_STOERMER_DIRECT, "free_fall", fall_exactly},
     {CK_METHOD_XPBD, "free_fall", fall_ahead},
     {CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
     {CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
@@ -322,6 +335,7 @@ static const Theory theories[] = {
     {CK_METHOD_SEMI_IMPLICIT_ODE, "free_fall", fall_ahead},
     {CK_METHOD_VELOCITY_VERLET, "terminal_speed", drag_verlet},
     {CK_METHOD_STOERMER_BARS, "terminal_speed", drag_leapfrog},
+    {CK_METHOD_STOERMER_DIRECT, "terminal_speed", drag_leapfrog},
     {CK_METHOD_XPBD, "terminal_speed", drag_then_damp},
     {CK_METHOD_BULLET_PBD, "terminal_speed", drag_then_damp},
     {CK_METHOD_IMPLICIT_EULER, "terminal_speed", drag_damp_first},
@@ -335,6 +349,7 @@ static const Theory theories[] = {
     {CK_METHOD_SEMI_IMPLICIT_ODE, "oscillator", oscillate_backward},
     {CK_METHOD_VELOCITY_VERLET, "vertical_chain", hang_exactly},
     {CK_METHOD_STOERMER_BARS, "vertical_chain", hang_bars},
+    {CK_METHOD_STOERMER_DIRECT, "vertical_chain", hang_direct},
     {CK_METHOD_XPBD, "vertical_chain", hang_xpbd},
     {CK_METHOD_BULLET_PBD, "vertical_chain", hang_bullet},
     {CK_METHOD_IMPLICIT_EULER, "vertical_chain", hang_exactly},

@@ -22,7 +22,7 @@ static void judge(ck_Run *run, ck_RunStatus status, const char *format, ...) {
 // Gained energy by what the engine itself models: bars that do not stretch hold none, whatever k the scene names.
 static double gained_energy(const ck_Run *run, const ck_Reference *reference) {
     const ck_Metric *metric = ck_metric_find("energy_drift");
-    if (run->engine->method != CK_METHOD_STOERMER_BARS)
+    if (run->engine->method != CK_METHOD_STOERMER_BARS && run->engine->method != CK_METHOD_STOERMER_DIRECT)
         return ck_metric_value(metric, run->model, &run->trajectory, reference);
     ck_Model bars = *run->model;
     bars.springs = malloc(sizeof *bars.springs * (size_t)bars.spring_count + 1);

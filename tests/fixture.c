@@ -50,3 +50,11 @@ void assert_near(const char *what, double value, double wanted, double tolerance
 bool fixture_is_solver(const ck_Engine *engine) {
     return engine->method != CK_METHOD_NONE && engine->method != CK_METHOD_SEED;
 }
+
+bool fixture_takes(const ck_Engine *engine, const ck_Model *model) {
+    ck_Settings automatic = {0}, used;
+    void *state;
+    if (!fixture_supports(engine, model) || engine->create(&state, model, &automatic, &used, NULL, NULL)) return false;
+    engine->destroy(state);
+    return true;
+}

@@ -34,6 +34,9 @@ bool fixture_supports(const ck_Engine *engine, const ck_Model *model);
 // True for engines that claim to be right: neither one that does nothing nor an origin with its quirks.
 bool fixture_is_solver(const ck_Engine *engine);
 
+// False where the engine refuses such a body.
+bool fixture_takes(const ck_Engine *engine, const ck_Model *model);
+
 // Fails the test unless |value − wanted| ≤ tolerance, and prints what was compared.
 void assert_near(const char *what, double value, double wanted, double tolerance);
 
