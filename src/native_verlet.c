@@ -1,9 +1,11 @@
 // Damped springs stepped by velocity Verlet with predicted velocity: the accuracy workhorse.
 #include "engine_list.h"
+#include "kernel_explicit.h"
 #include "native.h"
 #include "stability.h"
 #include "vector.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // Acceleration of all particles from springs, field and drag.
@@ -93,33 +95,74 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     return CK_OK;
 }
 
+// A regular cloth without colliders runs in rows; native then holds its state at the end of a frame.
+typedef struct Verlet {
+    ck_Native *native;
+    ck_ExplicitCloth *cloth; // NULL: the list of springs
+} Verlet;
+
+static void destroy(void *state) {
+    Verlet *verlet = state;
+    ck_explicit_destroy(verlet->cloth);
+    ck_native_destroy(verlet->native);
+    free(verlet);
+}
+
+// The first acceleration belongs to the start, or the first step would lose half a dt of it.
+static ck_Status start(Verlet *verlet, ck_Error *error) {
+    ck_Native *native = verlet->native;
+    const ck_Model *model = native->model;
+    ck_RowSprings springs;
+    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
+    accelerate(native, native->acceleration);
+    ck_explicit_destroy(verlet->cloth);
+    verlet->cloth = NULL;
+    if (native->contact || !ck_rows_fit(model, &springs)) return CK_OK;
+    return ck_explicit_create(&verlet->cloth, model, &springs, native->dt, native->position, native->velocity,
+                              native->acceleration, native->inverse_mass, error);
+}
+
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     ck_Status status = translate(model, wanted, used, ledger);
     if (status) return ck_fail(error, status, "out of memory");
-    ck_Native *native;
-    status = ck_native_create(&native, model, used, error);
-    if (status) return status;
-    // the first acceleration belongs to the start, or the first step would lose half a dt of it
-    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
-    accelerate(native, native->acceleration);
-    *state = native;
-    return CK_OK;
+    Verlet *verlet = calloc(1, sizeof *verlet);
+    if (!verlet) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    status = ck_native_create(&verlet->native, model, used, error);
+    if (!status) status = start(verlet, error);
+    if (status)
+        destroy(verlet);
+    else
+        *state = verlet;
+    return status;
 }
 
-// its acceleration is there from the start
 static void release(void *state, int particle) {
-    ck_Native *native = state;
-    ck_native_release(native, particle);
-    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
-    accelerate(native, native->acceleration);
+    Verlet *verlet = state;
+    ck_native_release(verlet->native, particle);
+    // without memory for rows the list of springs goes on
+    start(verlet, NULL);
 }
 
 static ck_StepResult step(void *state) {
-    ck_Native *native = state;
-    ck_native_start_frame(native);
-    for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    Verlet *verlet = state;
+    ck_Native *native = verlet->native;
+    if (verlet->cloth) {
+        ck_explicit_step(verlet->cloth, native->substeps);
+        ck_explicit_read(verlet->cloth, native->position, native->velocity);
+    } else {
+        ck_native_start_frame(native);
+        for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    }
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+static void read_state(const void *state, double *position, double *velocity) {
+    ck_native_read(((const Verlet *)state)->native, position, velocity);
+}
+
+static void read_contact(const void *state, double *force) {
+    ck_native_contact(((const Verlet *)state)->native, force);
 }
 
 const ck_Engine ck_native_verlet = {
@@ -132,8 +175,8 @@ const ck_Engine ck_native_verlet = {
     .order = 2,
     .create = create,
     .step = step,
-    .read = ck_native_read,
+    .read = read_state,
     .release = release,
-    .contact = ck_native_contact,
-    .destroy = ck_native_destroy,
+    .contact = read_contact,
+    .destroy = destroy,
 };
