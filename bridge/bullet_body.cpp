@@ -94,14 +94,11 @@ bool ck_bullet_body_is_finite(const ck_BulletBody &body) {
 }
 
 static void ledger_contact(ck_Ledger *ledger, const ck_Model *model, const char *friction_formula) {
-    for (int i = 0; i < model->collider_count; i++) {
-        const ck_Collider *collider = &model->colliders[i];
-        ck_ledger_add(ledger, {"restitution", collider->restitution, "1", "none", 0,
-                               "the bridge gives contact nodes e times the speed they met the surface with",
-                               collider->restitution > 0 ? CK_APPROXIMATE : CK_EXACT});
-        ck_ledger_add(ledger, {"friction", collider->friction, "1", "setFriction", collider->friction, friction_formula,
-                               CK_APPROXIMATE});
-    }
+    ck_ledger_add_colliders(ledger, model,
+                            {"restitution", 0, "1", "none", 0,
+                             "the bridge gives contact nodes e times the speed they met the surface with",
+                             CK_APPROXIMATE},
+                            {"friction", 0, "1", "setFriction", 0, friction_formula, CK_APPROXIMATE});
 }
 
 void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,

@@ -6,6 +6,7 @@
 #include "collider.h"
 #include "engine_list.h"
 #include "stability.h"
+#include "vector.h"
 
 #include <BulletSoftBody/btDeformableBodySolver.h>
 #include <BulletSoftBody/btDeformableGravityForce.h>
@@ -13,6 +14,7 @@
 #include <BulletSoftBody/btDeformableMultiBodyDynamicsWorld.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <btBulletDynamicsCommon.h>
+#include <cmath>
 
 namespace {
 
@@ -120,9 +122,16 @@ void ledger_speed(const ck_Model *model, const ck_Settings &used, ck_Ledger *led
         fastest = btMax(fastest, btVector3(speed[0], speed[1], speed[2]).length());
     }
     double limit = (high - low + btVector3(2, 2, 2) * margin).length() * used.substeps / model->step;
-    ck_ledger_add(ledger,
-                  {"start velocity", fastest, "m/s", "Node::m_v", btMin(fastest, limit),
-                   "Bullet clamps speed to bounding box diagonal / dt", fastest <= limit ? CK_EXACT : CK_IMPOSSIBLE});
+    // what it can reach: a fall as long as the scene or, held by pins, as deep as the body
+    double field[3];
+    ck_model_mean_field(model, field);
+    double pull = ck_length(field);
+    double fall =
+        model->pin_count && !model->release_count ? std::sqrt(2 * pull * model->size) : pull * model->duration;
+    if (model->drag > 0) fall = btMin(fall, pull / model->drag);
+    ck_ledger_add(ledger, {"speed", fastest + fall, "m/s", "Node::m_v", btMin(fastest + fall, limit),
+                           "at most; Bullet clamps it to bounding box diagonal / dt",
+                           fastest + fall <= limit ? CK_EXACT : CK_IMPOSSIBLE});
 }
 
 ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
@@ -143,7 +152,7 @@ ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Setting
                 {ck_stiffness_names[kind], spring->stiffness, "N/m", "btDeformableLagrangianForce", spring->stiffness,
                  is_implicit ? "k per link; (1 - L/l) clamped at 0 in the differential" : "k per link", CK_EXACT});
     }
-    if (!is_implicit && (model->terms & CK_TERM_VELOCITY)) ledger_speed(model, *used, ledger);
+    if (!is_implicit) ledger_speed(model, *used, ledger);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, {"spring damping", model->springs[0].damping, "N*s/m", "btDeformableLagrangianForce",
                                model->springs[0].damping, "c along the link", CK_EXACT});

@@ -37,7 +37,8 @@ void ck_ode_contacts_destroy(ck_OdeContacts *contacts) {
 // told from rest, 2·g·h, rests.
 static double wanted_speed(const ck_Collider *collider, double gap, double speed, double rest, double pull, double h) {
     if (gap >= 0) return -gap / h;
-    if (speed < -rest && collider->restitution > 0) return ck_collider_rebound(collider->restitution, -gap, -speed, pull, h);
+    if (speed < -rest && collider->restitution > 0)
+        return ck_collider_rebound(collider->restitution, -gap, -speed, pull, h);
     return fmin(PUSH_SHARE * -gap / h, PUSH_SPEED);
 }
 
@@ -65,9 +66,19 @@ static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, 
     double gap = ck_collider_gap(collider, position, normal), speed = ck_dot(velocity, normal);
     ck_model_field(contacts->model, particle, field);
     double rest = 2 * ck_length(field) * h;
-    // an impact with restitution is left to go in first
-    double reach = collider->restitution > 0 && speed < -rest ? 0 : fmax(rest * h, -2 * speed * h);
-    if (gap > reach) return;
+    if (gap > rest * h) {
+        // an impact with restitution is left to go in first; one without is met where it will be
+        double hit = ck_collider_hit(collider, position, velocity, field, h, 0), met[3];
+        if (!(hit <= h) || (collider->restitution > 0 && speed < -rest)) return;
+        memcpy(met, position, sizeof met);
+        ck_add_scaled(met, hit, velocity);
+        ck_collider_gap(collider, met, normal);
+        ck_subtract(met, position, met);
+        gap = ck_dot(met, normal);
+        speed = ck_dot(velocity, normal);
+    } else if (gap >= 0 && collider->restitution > 0 && speed < -rest) {
+        return;
+    }
     dContact contact = {.surface = {.mode = dContactMotionN | dContactSoftERP | dContactApprox1 | dContactFDir1,
                                     .mu = collider->friction,
                                     .soft_erp = 0,

@@ -72,14 +72,11 @@ static void translate_springs(const ck_Model *model, double h, ck_Ledger *ledger
 }
 
 static void translate_contact(const ck_Model *model, ck_Ledger *ledger) {
-    for (int i = 0; i < model->collider_count; i++) {
-        const ck_Collider *collider = &model->colliders[i];
-        ck_ledger_add(ledger,
-                      (ck_LedgerRow){"restitution", collider->restitution, "1", "motionN", collider->restitution,
-                                     "e*v_n at the surface, in the step after the impact; rests below 2*g*h", CK_APPROXIMATE});
-        ck_ledger_add(ledger, (ck_LedgerRow){"friction", collider->friction, "1", "mu", collider->friction,
-                                             "dContactApprox1, fdir1 along the slip: a cone", CK_APPROXIMATE});
-    }
+    ck_ledger_add_colliders(
+        ledger, model,
+        (ck_LedgerRow){"restitution", 0, "1", "motionN", 0,
+                       "e*v_n at the surface, in the step after the impact; rests below 2*g*h", CK_APPROXIMATE},
+        (ck_LedgerRow){"friction", 0, "1", "mu", 0, "dContactApprox1, fdir1 along the slip: a cone", CK_APPROXIMATE});
 }
 
 // Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, and at

@@ -76,7 +76,7 @@ int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Compar
 // a number in three digits, or a dash where there is none
 static void print_number(const char *format, int width, double number) {
     char text[32] = "-";
-    if (!isnan(number)) snprintf(text, sizeof text, format, number);
+    if (!isnan(number)) snprintf(text, sizeof text, fabs(number) < 1e6 ? format : "%.3g", number);
     printf(" %*s", width, text);
 }
 

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What can happen to one particle in one substep; wedged between colliders, it could go on for ever.
-#define MAX_EVENTS 16
+// What can happen to one particle in one substep; wedged between colliders, it could go on for ever. The rest of its
+// time is lost.
+#define MAX_EVENTS 200
 
 ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double dt, ck_Error *error) {
     *contact = NULL;
@@ -63,10 +64,34 @@ static bool hold(const ck_Collider *collider, const double *normal, double dt, c
     return true;
 }
 
+// The surfaces that hold a particle at once; of more than so many, the first.
+#define MAX_NORMALS 8
+typedef struct Hold {
+    double normals[MAX_NORMALS][3];
+    int count;
+} Hold;
+
+static void add_normal(Hold *hold, const double *normal) {
+    if (hold->count < MAX_NORMALS) memcpy(hold->normals[hold->count++], normal, 3 * sizeof(double));
+}
+
+// What one surface turns away may run into another. What then still points into either is left along both, or nowhere.
+static void squeeze(const Hold *hold, double *vector) {
+    bool enters = false;
+    for (int i = 0; i < hold->count; i++) enters |= ck_dot(vector, hold->normals[i]) < -1e-12 * ck_length(vector);
+    if (!enters) return;
+    const double *a = hold->normals[0], *b = hold->normals[1];
+    double edge[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    double along = hold->count == 2 ? ck_dot(vector, edge) : 0, squared = ck_dot(edge, edge);
+    memset(vector, 0, 3 * sizeof(double));
+    if (squared > 1e-12) ck_add_scaled(vector, along / squared, edge);
+}
+
 // The collider that carries the particle and the normal there; NULL where none does. left: the acceleration it leaves.
 static const ck_Collider *support(const ck_Contact *contact, const double *x, const double *v, const double *a,
                                   double *normal, double *left) {
     const ck_Collider *carrier = NULL;
+    Hold held = {.count = 0};
     memmove(left, a, 3 * sizeof(double));
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
@@ -77,7 +102,9 @@ static const ck_Collider *support(const ck_Contact *contact, const double *x, co
         if (!hold(collider, out, contact->dt, v, left)) continue;
         carrier = collider;
         memcpy(normal, out, sizeof out);
+        add_normal(&held, out);
     }
+    if (held.count > 1) squeeze(&held, left);
     return carrier;
 }
 
@@ -141,13 +168,16 @@ static const ck_Collider *first_hit(const ck_Contact *contact, const double *x, 
 
 // Strikes every surface that is touched and moved into. Deeper than slack there is only what rounding and starts leave.
 static void strike_touching(const ck_Contact *contact, double *x, double *v, const double *a) {
+    Hold touched = {.count = 0};
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
         double normal[3], gap = ck_collider_gap(collider, x, normal);
         if (gap > contact->slack) continue;
         if (gap < 0) ck_add_scaled(x, -gap, normal);
         strike(contact, collider, normal, v, a);
+        add_normal(&touched, normal);
     }
+    if (touched.count > 1) squeeze(&touched, v);
 }
 
 void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, const double *a) {
@@ -189,11 +219,14 @@ bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double
     return -ck_dot(speed, normal) > 2 * fabs(ck_dot(a, normal)) * contact->dt;
 }
 
-void ck_contact_project(ck_Contact *contact, double mass, const double *start, double *x) {
+// One round of ck_contact_project; false where nothing was inside.
+static bool push_out(ck_Contact *contact, double mass, const double *start, double *x) {
+    bool pushed = false;
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
         double normal[3], along[3], way[3], before[3], gap = ck_collider_gap(collider, x, normal);
         if (!(gap < 0)) continue;
+        pushed = true;
         memcpy(before, x, sizeof before);
         ck_add_scaled(x, -gap, normal);
         ck_subtract(way, x, start);
@@ -203,4 +236,14 @@ void ck_contact_project(ck_Contact *contact, double mass, const double *start, d
         ck_subtract(way, x, before);
         ck_add_scaled(contact->impulse, mass / contact->dt, way);
     }
+    return pushed;
+}
+
+// Between several colliders, one pushes into another.
+#define PUSH_ROUNDS 16
+
+void ck_contact_project(ck_Contact *contact, double mass, const double *start, double *x) {
+    int rounds = contact->model->collider_count > 1 ? PUSH_ROUNDS : 1;
+    while (rounds-- && push_out(contact, mass, start, x))
+        ;
 }

@@ -20,7 +20,8 @@ typedef struct ck_Contact {
 ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double dt, ck_Error *error);
 
 // Moves a particle by one substep under a constant acceleration a, m/s², with every impact, slide, stop and lift-off on
-// the way at its time: a body in a uniform field bounces and slides without a step error.
+// the way at its time: in a uniform field a body bounces, and slides along a straight line, without a step error; where
+// friction turns a path, its direction is that of the start of the substep.
 //   x, v  in-out, m and m/s, at the start and at the end of the substep
 // Cost: one crossing test a collider, one more for each event.
 void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, const double *a);

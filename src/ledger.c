@@ -1,12 +1,33 @@
 #include "ledger.h"
 
-#include <assert.h>
+#include "model.h"
+
 #include <stddef.h>
 
 const char *const ck_match_names[] = {"exact", "approximate", "impossible"};
 
 void ck_ledger_add(ck_Ledger *ledger, ck_LedgerRow row) {
     if (!ledger) return;
-    assert(ledger->count < CK_LEDGER_CAPACITY);
+    if (ledger->count == CK_LEDGER_CAPACITY) return;
     ledger->rows[ledger->count++] = row;
+}
+
+static bool is_like_an_earlier(const ck_Model *model, int index) {
+    for (int i = 0; i < index; i++)
+        if (model->colliders[i].restitution == model->colliders[index].restitution &&
+            model->colliders[i].friction == model->colliders[index].friction)
+            return true;
+    return false;
+}
+
+void ck_ledger_add_colliders(ck_Ledger *ledger, const ck_Model *model, ck_LedgerRow restitution,
+                             ck_LedgerRow friction) {
+    for (int i = 0, kinds = 0; i < model->collider_count && kinds < CK_LEDGER_COLLIDERS; i++) {
+        if (is_like_an_earlier(model, i)) continue;
+        kinds++;
+        restitution.wanted = restitution.native_value = model->colliders[i].restitution;
+        friction.wanted = friction.native_value = model->colliders[i].friction;
+        ck_ledger_add(ledger, restitution);
+        ck_ledger_add(ledger, friction);
+    }
 }

@@ -20,15 +20,24 @@ typedef struct ck_LedgerRow {
     ck_Match match;
 } ck_LedgerRow;
 
-#define CK_LEDGER_CAPACITY 32
+// Room for every quantity of a scene, for the quirks of an origin and for so many different colliders.
+#define CK_LEDGER_CAPACITY 48
+#define CK_LEDGER_COLLIDERS 8
 
 typedef struct ck_Ledger {
     ck_LedgerRow rows[CK_LEDGER_CAPACITY];
     int count;
 } ck_Ledger;
 
-// Adds a row. ledger may be NULL: then nobody asked.
+// Adds a row. ledger may be NULL: then nobody asked. A full ledger takes no more.
 void ck_ledger_add(ck_Ledger *ledger, ck_LedgerRow row);
+
+// Adds the rows restitution and friction of every collider that differs from those before, of the first
+// CK_LEDGER_COLLIDERS such: both rows say what the engine makes of them, the values are
+// the colliders'.
+struct ck_Model;
+void ck_ledger_add_colliders(ck_Ledger *ledger, const struct ck_Model *model, ck_LedgerRow restitution,
+                             ck_LedgerRow friction);
 
 #ifdef __cplusplus
 }

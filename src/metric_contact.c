@@ -6,11 +6,19 @@
 
 #include <string.h>
 
-// the smallest gap of all particles that are free at the start to all colliders, m
-static double smallest_gap(const ck_Model *model, const double *position) {
+static bool is_pinned_at(const ck_Model *model, int particle, int frame) {
+    if (!model->pinned[particle]) return false;
+    for (int i = 0; i < model->release_count; i++)
+        for (int j = 0; j < model->releases[i].particle_count && model->releases[i].frame <= frame; j++)
+            if (model->releases[i].particles[j] == particle) return false;
+    return true;
+}
+
+// the smallest gap of all particles that are free at a frame to all colliders, m
+static double smallest_gap(const ck_Model *model, const double *position, int frame) {
     double smallest = INFINITY, normal[3];
     for (int i = 0; i < model->particle_count; i++)
-        for (int j = 0; j < model->collider_count && !model->pinned[i]; j++)
+        for (int j = 0; j < model->collider_count && !is_pinned_at(model, i, frame); j++)
             smallest = fmin(smallest, ck_collider_gap(&model->colliders[j], position + 3 * i, normal));
     return isfinite(smallest) ? smallest : NAN;
 }
@@ -18,7 +26,7 @@ static double smallest_gap(const ck_Model *model, const double *position) {
 double ck_metric_height_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                            const ck_Reference *reference) {
     (void)reference;
-    return smallest_gap(model, ck_trajectory_position(trajectory, frame)) / model->spacing;
+    return smallest_gap(model, ck_trajectory_position(trajectory, frame), frame) / model->spacing;
 }
 
 double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
@@ -99,8 +107,8 @@ double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *traje
     ck_add_scaled(line, 1 / ck_length(direction), direction);
     ck_subtract(to, to, from);
     double way = ck_dot(to, line), first = ck_dot(start, line), last = ck_dot(end, line);
-    // one that sticks tells nothing but that μ is enough
-    if (!(way > 1e-2 * model->spacing)) return NAN;
+    // one that sticks tells nothing but that μ is enough, and one that came back has slid farther than it got
+    if (!(way > 1e-2 * model->spacing) || last < -ck_metric_still_speed(model)) return NAN;
     return ((first * first - last * last) / (2 * way) + ck_dot(drive, line)) / press;
 }
 
@@ -149,7 +157,7 @@ double ck_metric_wrap_friction_over(const ck_Model *model, const ck_Trajectory *
     ck_subtract(way, ck_trajectory_position(trajectory, end), model->position);
     double a = -2 * ck_dot(way, field) / g / (time * time);
     double tension = model->mass[0] * (g + a), far_tension = model->mass[last] * (g - a);
-    return angle > 0.1 && tension > 0 && far_tension > 0 ? log(far_tension / tension) / angle : NAN;
+    return angle > 0.1 && tension > 0 && far_tension > 0 ? fabs(log(far_tension / tension)) / angle : NAN;
 }
 
 double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *trajectory,

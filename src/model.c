@@ -70,9 +70,25 @@ static ck_Status set_pins(ck_Model *model, const ck_Scene *scene, ck_Error *erro
     return status;
 }
 
+// Whether a particle is in an earlier release, or among the first so many of the last one.
+static bool is_released_before(const ck_Model *model, int particle, int of_last) {
+    for (int i = 0; i < model->release_count; i++) {
+        const ck_Release *release = &model->releases[i];
+        int count = i + 1 < model->release_count ? release->particle_count : of_last;
+        for (int j = 0; j < count; j++)
+            if (release->particles[j] == particle) return true;
+    }
+    return false;
+}
+
 static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
     const ck_SceneRelease *from = &scene->file->release[index];
     ck_Release *release = &model->releases[model->release_count++];
+    if (from->at >= model->duration) {
+        char path[32];
+        snprintf(path, sizeof path, "release[%u].at", index);
+        return ck_scene_fail(scene, path, error, "the scene ends at %g s; let pins go before", model->duration);
+    }
     release->at = from->at;
     release->frame = (int)fmin(ceil(from->at / model->step * (1 - 1e-12)), model->frame_count);
     release->particles = malloc(sizeof *release->particles * (size_t)model->particle_count * from->pins_count);
@@ -87,6 +103,9 @@ static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t in
             if (!model->pinned[chosen[j]])
                 return ck_scene_fail(scene, path, error,
                                      "%s is not pinned, so that it cannot be released; add it to pins", from->pins[i]);
+        for (int j = 0; j < count; j++)
+            if (is_released_before(model, chosen[j], release->particle_count + j))
+                return ck_scene_fail(scene, path, error, "%s is already let go; name it once", from->pins[i]);
         release->particle_count += count;
     }
     return CK_OK;
@@ -128,14 +147,14 @@ static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error 
     return status;
 }
 
-// A pin may be inside a collider; what is free there would be thrown out.
+// A pin that stays may be inside a collider; what is free there, or let go, would be thrown out.
 static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     for (int i = 0; i < model->collider_count; i++) {
         char path[32];
         snprintf(path, sizeof path, "colliders[%d]", i);
         for (int j = 0; j < model->particle_count; j++) {
             double normal[3], gap = ck_collider_gap(&model->colliders[i], model->position + 3 * j, normal);
-            if (!model->pinned[j] && gap < -1e-9 * model->spacing)
+            if (!ck_model_is_held(model, j) && gap < -1e-9 * model->spacing)
                 return ck_scene_fail(scene, path, error,
                                      "particle %d starts %g m inside this collider; move the body or the collider", j,
                                      -gap);
@@ -215,6 +234,12 @@ void ck_model_free(ck_Model *model) {
     free(model->truth);
     free(model->name);
     *model = (ck_Model){0};
+}
+
+bool ck_model_is_held(const ck_Model *model, int particle) {
+    if (!model->pinned[particle]) return false;
+    return !is_released_before(model, particle,
+                               model->release_count ? model->releases[model->release_count - 1].particle_count : 0);
 }
 
 double ck_model_inverse_mass(const ck_Model *model, int particle) {

@@ -98,6 +98,9 @@ ck_Status ck_model_build(ck_Model *model, const struct ck_Scene *scene, ck_Error
 // Accepts a zeroed model.
 void ck_model_free(ck_Model *model);
 
+// True for a particle that is pinned from start to end.
+bool ck_model_is_held(const ck_Model *model, int particle);
+
 // 1/mass, or 0 where pinned, in 1/kg.
 double ck_model_inverse_mass(const ck_Model *model, int particle);
 

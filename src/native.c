@@ -113,14 +113,12 @@ void ck_native_project(ck_Native *native) {
 }
 
 static void ledger_contact(ck_Ledger *ledger, const ck_Model *model) {
-    for (int i = 0; i < model->collider_count; i++) {
-        const ck_Collider *collider = &model->colliders[i];
-        ck_ledger_add(ledger,
-                      (ck_LedgerRow){"restitution", collider->restitution, "1", "impulse", collider->restitution,
-                                     "(1 + e)*v_n at the time of impact; 0 below 2*a_n*dt, which is rest", CK_EXACT});
-        ck_ledger_add(ledger, (ck_LedgerRow){"friction", collider->friction, "1", "impulse", collider->friction,
-                                             "Coulomb cone: at most mu*(1 + e)*v_n, mu*a_n at rest", CK_EXACT});
-    }
+    ck_ledger_add_colliders(ledger, model,
+                            (ck_LedgerRow){"restitution", 0, "1", "impulse", 0,
+                                           "(1 + e)*v_n at the time of impact; 0 below 2*a_n*dt, which is rest",
+                                           CK_EXACT},
+                            (ck_LedgerRow){"friction", 0, "1", "impulse", 0,
+                                           "Coulomb cone: at most mu*(1 + e)*v_n, mu*a_n at rest", CK_EXACT});
 }
 
 void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings *used, const char *drag_formula,

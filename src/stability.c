@@ -28,6 +28,11 @@ static void add_outer(double *m, double scale, const double *n) {
     m[5] += scale * n[1] * n[2];
 }
 
+// 1/mass of a particle that is free at some time, else 0.
+static double weight_ever(const ck_Model *model, int particle) {
+    return ck_model_is_held(model, particle) ? 0 : 1 / model->mass[particle];
+}
+
 ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
     *frequency = 0;
     double(*stiffness)[6] = calloc((size_t)model->particle_count, sizeof *stiffness);
@@ -44,7 +49,7 @@ ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
     }
     double largest = 0;
     for (int i = 0; i < model->particle_count; i++)
-        if (!model->pinned[i]) largest = fmax(largest, 2 * largest_eigenvalue(stiffness[i]) / model->mass[i]);
+        if (!ck_model_is_held(model, i)) largest = fmax(largest, 2 * largest_eigenvalue(stiffness[i]) / model->mass[i]);
     free(stiffness);
     *frequency = sqrt(largest);
     return CK_OK;
@@ -61,7 +66,7 @@ double ck_stability_stiffness_rate(const ck_Model *model) {
     double largest = 0;
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
-        double weight = ck_model_inverse_mass(model, spring->a) + ck_model_inverse_mass(model, spring->b);
+        double weight = weight_ever(model, spring->a) + weight_ever(model, spring->b);
         largest = fmax(largest, spring->stiffness * weight);
     }
     return largest;
@@ -72,14 +77,14 @@ double ck_stability_load(const ck_Model *model) {
     for (int i = 0; i < model->particle_count && (model->pin_count || model->collider_count); i++) {
         double field[3];
         ck_model_field(model, i, field);
-        if (!model->pinned[i]) load += model->mass[i] * ck_length(field);
+        if (!ck_model_is_held(model, i)) load += model->mass[i] * ck_length(field);
     }
     return load;
 }
 
 double ck_stability_lightness(const ck_Model *model) {
     double largest = 0;
-    for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, ck_model_inverse_mass(model, i));
+    for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, weight_ever(model, i));
     return largest;
 }
 

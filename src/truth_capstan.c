@@ -70,7 +70,9 @@ static bool read_capstan(Capstan *capstan, const ck_Model *model) {
     // half a node's rope belongs to each end's neighbour
     capstan->weight[0] = model->mass[0] - 0.5 * model->mass[1];
     capstan->weight[1] = model->mass[last] - 0.5 * model->mass[1];
-    return capstan->hang[0] > 0 && capstan->hang[1] > 0 && lies_over(capstan, model);
+    bool falls_onwards = capstan->weight[1] + capstan->density * capstan->hang[1] >=
+                         capstan->weight[0] + capstan->density * capstan->hang[0];
+    return falls_onwards && capstan->hang[0] > 0 && capstan->hang[1] > 0 && lies_over(capstan, model);
 }
 
 // Tension at the far tangent point minus what the far side asks for, at an acceleration; slid: m, v: m/s.
@@ -97,21 +99,31 @@ static double acceleration(const Capstan *capstan, double slid, double v) {
     return fmax(0, -at_zero / slope);
 }
 
+// By the midpoint rule: acceleration hardly changes as it slides.
+static void slide_for(const Capstan *capstan, double time, double *slid, double *v) {
+    const int steps = 200;
+    const double dt = time / steps;
+    *slid = *v = 0;
+    for (int i = 0; i < steps && time > 0; i++) {
+        double half = acceleration(capstan, *slid, *v);
+        double middle = acceleration(capstan, *slid + 0.5 * dt * *v, *v + 0.5 * dt * half);
+        *slid += dt * (*v + 0.5 * dt * middle);
+        *v += dt * middle;
+    }
+}
+
 ck_Status ck_truth_capstan(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
     Capstan capstan = {0};
-    ck_Status status = ck_truth_need(read_capstan(&capstan, model), model, error,
-                                     "a chain of equal nodes but for its end weights, over the upper half of one ball "
-                                     "and hanging down on both sides, in gravity alone");
+    bool fits = read_capstan(&capstan, model);
+    double slid = 0, v = 0;
+    if (fits) slide_for(&capstan, model->duration, &slid, &v);
+    fits = fits && slid < capstan.hang[0];
+    ck_Status status =
+        ck_truth_need(fits, model, error,
+                      "a chain of equal nodes but for its end weights, over the upper half of one ball "
+                      "and hanging down on both sides to the end, the last side heavier, in gravity alone");
     if (status) return status;
-    // the midpoint rule: acceleration hardly changes as it slides
-    const int steps = 200;
-    double slid = 0, v = 0, dt = time / steps;
-    for (int i = 0; i < steps && time > 0; i++) {
-        double half = acceleration(&capstan, slid, v);
-        double middle = acceleration(&capstan, slid + 0.5 * dt * v, v + 0.5 * dt * half);
-        slid += dt * (v + 0.5 * dt * middle);
-        v += dt * middle;
-    }
+    slide_for(&capstan, time, &slid, &v);
     for (int i = 0; i < model->particle_count; i++) {
         double direction[3];
         place(&capstan, arc_of(&capstan, model, i) + slid, position + 3 * i, direction);

@@ -61,11 +61,17 @@ static void bounce(double *height, double *speed, double gap, double start, doub
     double rise = restitution * impact, since = time - first;
     *height = *speed = 0;
     if (restitution < 1 && since >= 2 * rise / (g * (1 - restitution))) return;
-    while (rise > 0 && since >= 2 * rise / g) {
-        since -= 2 * rise / g;
-        rise *= restitution;
-    }
     if (!(rise > 0)) return;
+    // how many bounces have gone before: each takes e times as long as the last
+    double hop = 2 * rise / g;
+    if (restitution == 1) {
+        since = fmod(since, hop);
+    } else {
+        double gone = floor(log1p(-since * (1 - restitution) / hop) / log(restitution)),
+               passed = pow(restitution, gone);
+        since = fmax(0, since - hop * (1 - passed) / (1 - restitution));
+        rise *= passed;
+    }
     *height = rise * since - 0.5 * g * since * since;
     *speed = rise - g * since;
 }
@@ -73,7 +79,7 @@ static void bounce(double *height, double *speed, double gap, double start, doub
 ck_Status ck_truth_bounce(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
     Contact contact = {0};
     double along[3], drift[3];
-    bool fits = read_contact(&contact, model, CK_PLANE) && contact.gap >= 0;
+    bool fits = read_contact(&contact, model, CK_PLANE) && contact.gap >= -1e-9 * model->size;
     if (fits) {
         tangential(along, contact.field, contact.normal);
         tangential(drift, contact.velocity, contact.normal);
@@ -85,9 +91,11 @@ ck_Status ck_truth_bounce(const ck_Model *model, double time, double *position, 
                                      "no drag, and friction only where it falls straight");
     if (status) return status;
     double height, speed, way[3] = {0};
-    bounce(&height, &speed, contact.gap, ck_dot(contact.velocity, contact.normal), contact.press,
-           contact.collider->restitution, time);
-    ck_add_scaled(way, height - contact.gap, contact.normal);
+    // what lies on the plane has nothing to fall
+    double gap = contact.gap > 1e-9 * model->size ? contact.gap : 0;
+    bounce(&height, &speed, gap, ck_dot(contact.velocity, contact.normal), contact.press, contact.collider->restitution,
+           time);
+    ck_add_scaled(way, height - gap, contact.normal);
     ck_add_scaled(way, time, drift);
     ck_add_scaled(drift, speed, contact.normal);
     move_all(model, way, drift, position, velocity);

@@ -296,6 +296,71 @@ static void test_release(void **state) {
     ck_comparison_free(&comparison);
 }
 
+// A groove of two planes, acute: a particle comes to rest at its bottom, in neither of them.
+static void test_groove(void **state) {
+    (void)state;
+    ck_Comparison comparison;
+    load(&comparison, "name: groove\nnetwork: {nodes: [{at: [0.02, 0.3, 0], mass: 0.1}], bars: []}\n" PULL
+                      "colliders:\n  - plane: {point: [0, 0, 0], normal: [0.9396926207859084, 0.3420201433256687, 0]}\n"
+                      "  - plane: {point: [0, 0, 0], normal: [-0.9396926207859084, 0.3420201433256687, 0]}\n"
+                      "time: {duration: 2, step: 0.004166666666666667}\ntruth: rest\n");
+    const char *const natives[] = {"native-verlet", "native-bars", "native-xpbd"};
+    for (int i = 0; i < 3; i++) {
+        ck_Trajectory trajectory;
+        fixture_run(&trajectory, &comparison.model, ck_engine_find(natives[i]), NULL, NULL);
+        const double *x = ck_trajectory_position(&trajectory, comparison.model.frame_count);
+        // a substep's fall, g·dt², may come back each step, divided by the sine of half the angle
+        assert_near(natives[i], ck_length(x), 0, 1e-3);
+        assert_near(natives[i], value_of(&comparison, &trajectory, "penetration_max"), 0, 1e-4);
+        ck_trajectory_free(&trajectory);
+    }
+    ck_comparison_free(&comparison);
+}
+
+// A ball that a fast particle passes by is no obstacle, to any engine.
+static void test_passing_by(void **state) {
+    (void)state;
+    ck_Comparison comparison;
+    load(&comparison, "name: by\nnetwork: {nodes: [{at: [-1, 0.12, 0], mass: 0.1}], bars: []}\nvelocity: [5, 0, 0]\n"
+                      "colliders: [{sphere: {center: [0, 0, 0], radius: 0.1, friction: 0.5}}]\n"
+                      "time: {duration: 0.4, step: 0.02}\n");
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        ck_Trajectory trajectory;
+        fixture_run(&trajectory, &comparison.model, engine, NULL, NULL);
+        const double *v = ck_trajectory_velocity(&trajectory, comparison.model.frame_count);
+        // bullet-explicit clamps the speed, but not its direction
+        assert_near(engine->name, v[1], 0, 1e-12);
+        if (strcmp(engine->name, "bullet-explicit")) assert_near(engine->name, v[0], 5, 1e-9);
+        ck_trajectory_free(&trajectory);
+    }
+    ck_comparison_free(&comparison);
+}
+
+// More colliders, all different, than a ledger has rows for.
+static void test_many_colliders(void **state) {
+    (void)state;
+    char text[6000] = "name: many\nnetwork: {nodes: [{at: [0, 1, 0], mass: 0.1}], bars: []}\n" PULL
+                      "time: {duration: 0.1, step: 0.01}\ncolliders:\n";
+    for (int i = 0; i < 40; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text),
+                 "  - sphere: {center: [%d, -1, 0], radius: 0.3, friction: 0.%02d}\n", i, i + 1);
+    ck_Comparison comparison;
+    load(&comparison, text);
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        if (!fixture_supports(engine, &comparison.model)) continue;
+        ck_Ledger ledger = {0};
+        ck_Settings used, wanted = {0};
+        void *world;
+        assert_int_equal(engine->create(&world, &comparison.model, &wanted, &used, &ledger, NULL), CK_OK);
+        engine->destroy(world);
+        assert_true(ledger.count <= CK_LEDGER_CAPACITY);
+    }
+    ck_comparison_free(&comparison);
+}
+
 // What a scene does not mention costs nothing: without colliders there is no contact to ask.
 static void test_costs_nothing(void **state) {
     (void)state;
@@ -320,6 +385,9 @@ int main(void) {
         cmocka_unit_test(test_cloth_on_ball),
         cmocka_unit_test(test_release),
         cmocka_unit_test(test_costs_nothing),
+        cmocka_unit_test(test_groove),
+        cmocka_unit_test(test_passing_by),
+        cmocka_unit_test(test_many_colliders),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
