@@ -17,6 +17,7 @@ int ck_command_list(int argc, char **argv);
 int ck_command_run(int argc, char **argv);
 int ck_command_compare(int argc, char **argv);
 int ck_command_claims(int argc, char **argv);
+int ck_command_bench(int argc, char **argv);
 
 // What run and compare have in common on their command lines.
 typedef struct ck_Arguments {

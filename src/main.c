@@ -11,6 +11,7 @@ static const ck_Command commands[] = {
     {"run", "SCENE", "one scene, chosen engines: summary and ledger; CSVs with --out", ck_command_run},
     {"compare", "[SCENE...]", "all engines on all scenes: the six CSVs of a comparison", ck_command_compare},
     {"claims", "", "what was claimed of the two origins, and what their quirks cost", ck_command_claims},
+    {"bench", "", "how fast the engines are: per spring, per step, and as a cloth grows", ck_command_bench},
 };
 #define COMMANDS (sizeof commands / sizeof *commands)
 

@@ -1,0 +1,22 @@
+// How fast the engines are: per spring, per step, and as a cloth grows.
+#ifndef CK_BENCH_H
+#define CK_BENCH_H
+
+#include "csv_file.h"
+#include "status.h"
+
+extern const char *const ck_bench_columns[];
+
+typedef struct ck_BenchOptions {
+    int rounds;    // interleaved repeats of every engine (usually 7)
+    double budget; // CPU seconds that one repeat may take; what takes longer is left out with its reason
+    int largest;   // side of the largest cloth, in particles (usually 1024)
+    void (*progress)(const char *body, const char *engine); // may be NULL
+} ck_BenchOptions;
+
+// Adds rows: for cloths of 20², 64² and 256² and a rope of 1000, every engine interleaved, the time of one spring in
+// one iteration, of a step, and its share of what the processor could do; then native-verlet as the cloth grows. value
+// is the median, low and high the quartiles. CPU time of this thread. Errors: CK_NO_MEMORY.
+ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error);
+
+#endif
