@@ -10,6 +10,7 @@
 #include <BulletSoftBody/btDefaultSoftBodySolver.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <algorithm>
 #include <btBulletDynamicsCommon.h>
 #include <cmath>
 
@@ -63,6 +64,7 @@ struct Classic {
     std::vector<double> kappa_over_weight; // of each link: κ/(w_a + w_b)
     std::vector<btVector3> field_force;    // N on each node
     std::vector<Landing> landings;         // of this substep
+    std::vector<btVector3> tension;        // N, of the springs on each node; empty without colliders
 
     ~Classic() {
         if (!around) return;
@@ -104,8 +106,9 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     if (model->collider_count) limit = std::fmin(limit, 1.0 / 240);
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     double dt = model->step / used->substeps;
-    ck_bullet_ledger(ledger, model, *used, "Node::m_f",
-                     "RContact::m_c3 edited to a cone of what presses before links are solved");
+    ck_bullet_ledger(
+        ledger, model, *used, "Node::m_f",
+        "RContact::m_c3 edited to a cone of what presses: way into the surface and the tension of springs");
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
         const ck_Spring *spring = ck_model_spring_of_kind(model, static_cast<ck_SpringKind>(kind));
         if (!spring) continue;
@@ -152,15 +155,20 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
         btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
         const ck_Collider &collider = ck_BulletColliders::of(body.model, contact.m_cti.m_colObj);
         const btVector3 &normal = contact.m_cti.m_normal;
-        btVector3 way = contact.m_node->m_x - contact.m_node->m_q;
-        double way_in = -way.dot(normal), slip = (way + normal * way_in).length();
-        double gap = contact.m_node->m_q.dot(normal) + contact.m_cti.m_offset;
-        double pull = -ck_bullet_field(body, body.particle_of_node[contact.m_node->index]).dot(normal);
+        const btSoftBody::Node &node = *contact.m_node;
+        auto index = contact.m_node - &body.soft->m_nodes[0];
+        btVector3 way = node.m_x - node.m_q;
+        // what links will add, by their tension at the start of the substep: it presses and pulls along, too
+        btVector3 foreseen = way + state.tension[index] * (node.m_im * dt * dt);
+        double way_in = -way.dot(normal), press = -foreseen.dot(normal);
+        double slip = (foreseen + normal * press).length();
+        double gap = node.m_q.dot(normal) + contact.m_cti.m_offset;
+        double pull = -ck_bullet_field(body, body.particle_of_node[index]).dot(normal);
         Landing landing = land(collider, gap, way_in, pull, dt);
         landing.node = contact.m_node;
         landing.normal = normal;
         state.landings.push_back(landing);
-        double push = std::fmax(0, way_in) + dt * landing.leaving;
+        double push = std::fmax(0, press) + dt * landing.leaving;
         contact.m_c3 = slip > 0 ? 1 - std::fmin(1, collider.friction * push / slip) : 0;
         contact.m_c4 = 0;
     }
@@ -179,6 +187,7 @@ void finish_landings(Classic &state) {
 
 void surround(Classic &state) {
     state.around = std::make_unique<Surroundings>();
+    state.tension.resize(state.body.soft->m_nodes.size());
     World &world = state.around->world;
     world.setGravity(state.info.m_gravity);
     state.info.m_broadphase = &state.around->broadphase;
@@ -228,11 +237,17 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
 // force.
 void prepare_links(Classic &state) {
     btSoftBody &soft = *state.body.soft;
+    std::fill(state.tension.begin(), state.tension.end(), btVector3(0, 0, 0));
     for (int i = 0; i < soft.m_links.size(); i++) {
         btSoftBody::Link &link = soft.m_links[i];
         const ck_Spring &spring = *state.body.spring[i];
         btVector3 d = link.m_n[1]->m_x - link.m_n[0]->m_x;
         double length = d.length(), rest = spring.rest;
+        if (state.around && length > 0 && std::isfinite(spring.stiffness)) {
+            btVector3 tension = d * (spring.stiffness * (length - rest) / length);
+            state.tension[link.m_n[0] - &soft.m_nodes[0]] += tension;
+            state.tension[link.m_n[1] - &soft.m_nodes[0]] -= tension;
+        }
         link.m_c0 = length * (length + rest) / (length * length + rest * rest) / state.kappa_over_weight[i];
         if (spring.damping > 0 && length > 0) {
             btVector3 force = d * (spring.damping * d.dot(link.m_n[1]->m_v - link.m_n[0]->m_v) / (length * length));
