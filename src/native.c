@@ -50,6 +50,8 @@ void ck_native_destroy(void *state) {
     if (!native) return;
     if (native->contact) free(native->origin);
     free(native->contact);
+    free(native->compliance);
+    free(native->gamma);
     free(native->position);
     free(native->velocity);
     free(native->start);

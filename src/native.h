@@ -16,6 +16,7 @@ typedef struct ck_Native {
     double *acceleration;        // [3*n]
     double *inverse_mass;        // [n]
     double *multiplier;          // [springs] of the constraints, kg·m (force·dt²)
+    double *compliance, *gamma;  // [springs] XPBD's α̃ and γ̃, else NULL
     ck_Contact *contact;         // NULL without colliders
 } ck_Native;
 

@@ -4,6 +4,7 @@
 #include "stability.h"
 #include "vector.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // One Gauss–Seidel sweep: Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃), α̃ = 1/(k·dt²), γ̃ = c/(k·dt).
@@ -11,7 +12,6 @@
 // Source: Macklin, Müller, Chentanez 2016, eq. 18 and 26.
 static void sweep(ck_Native *native) {
     const ck_Model *model = native->model;
-    const double dt = native->dt;
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         double weight_a = native->inverse_mass[spring->a], weight_b = native->inverse_mass[spring->b];
@@ -21,7 +21,7 @@ static void sweep(ck_Native *native) {
         ck_subtract(d, b, a);
         double length = ck_length(d);
         if (!(length > 0)) continue;
-        double compliance = 1 / (spring->stiffness * dt * dt), damping = spring->damping / (spring->stiffness * dt);
+        double compliance = native->compliance[i], damping = native->gamma[i];
         for (int axis = 0; axis < 3; axis++)
             moved[axis] = d[axis] - (native->start[3 * spring->b + axis] - native->start[3 * spring->a + axis]);
         double residual =
@@ -100,7 +100,23 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
-    return ck_native_create((ck_Native **)state, model, used, error);
+    ck_Native *native;
+    ck_Status status = ck_native_create(&native, model, used, error);
+    if (status) return status;
+    size_t springs = (size_t)model->spring_count;
+    native->compliance = malloc(sizeof(double) * springs + 1);
+    native->gamma = malloc(sizeof(double) * springs + 1);
+    if (!native->compliance || !native->gamma) {
+        ck_native_destroy(native);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    for (size_t i = 0; i < springs; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        native->compliance[i] = 1 / (spring->stiffness * native->dt * native->dt);
+        native->gamma[i] = spring->damping / (spring->stiffness * native->dt);
+    }
+    *state = native;
+    return CK_OK;
 }
 
 static ck_StepResult step(void *state) {
