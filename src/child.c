@@ -16,6 +16,10 @@
 
 volatile sig_atomic_t ck_child_interrupted;
 
+ck_Status ck_child_check(ck_Error *error) {
+    return ck_child_interrupted ? ck_fail(error, CK_IO, "interrupted; nothing was written") : CK_OK;
+}
+
 ck_Limits ck_limits_default(void) {
     return (ck_Limits){.seconds = 900, .memory_bytes = (size_t)4 << 30};
 }
@@ -128,7 +132,7 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
     describe(result, wait_status, limits, output);
-    if (ck_child_interrupted) status = ck_fail(error, CK_IO, "interrupted; nothing was written");
+    if (!status) status = ck_child_check(error);
 cleanup:
     if (output >= 0) close(output);
     if (alive[0] >= 0) close(alive[0]);

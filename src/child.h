@@ -27,6 +27,9 @@ typedef struct ck_ChildResult {
 // Set by a signal handler: the current child is ended, and ck_child_run fails with CK_IO from then on.
 extern volatile sig_atomic_t ck_child_interrupted;
 
+// CK_IO with its message once a signal has come, else CK_OK: for long work in the parent.
+ck_Status ck_child_check(ck_Error *error);
+
 // Forks, runs work(context) in the child and waits for it. What the child prints does not reach the caller's streams.
 // Results travel through memory that context shares with the child.
 // Errors: CK_IO when no process can be started. How the child ended is a result, not an error.

@@ -1,5 +1,7 @@
 #include "equilibrium.h"
 
+#include "child.h"
+
 #include "engine_list.h"
 #include "metric.h"
 #include "random.h"
@@ -254,6 +256,7 @@ static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, doub
         if (ck_native_verlet.step(state))
             status = ck_fail(error, CK_REFUSED, "%s: diverges on the way to its equilibrium", model->name);
         ck_native_verlet.read(state, position, velocity);
+        if (!status) status = ck_child_check(error);
         speed = 0;
         for (int i = 0; i < model->particle_count; i++) speed = fmax(speed, ck_length(velocity + 3 * i));
     }

@@ -1,5 +1,6 @@
 #include "reference.h"
 
+#include "child.h"
 #include "random.h"
 #include "stability.h"
 #include "vector.h"
@@ -84,7 +85,8 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
     memcpy(y, model->position, half * sizeof(double));
     memcpy(y + half, model->velocity, half * sizeof(double));
     if (nudge > 0) nudge_start(model, y, nudge);
-    for (int frame = 0; frame <= model->frame_count; frame++) {
+    for (int frame = 0; frame <= model->frame_count && !status; frame++) {
+        status = ck_child_check(error);
         if (frame) let_go(&now, frame - 1);
         for (int i = 0; frame && i < substeps; i++) runge_kutta(&now, model->step / substeps, y, k, stage);
         bool finite = true;
@@ -95,7 +97,7 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
     }
     free(memory);
     free(pinned);
-    return CK_OK;
+    return status;
 }
 
 // largest distance of a particle between two paths at one frame, / size

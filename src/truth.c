@@ -1,5 +1,6 @@
 #include "truth.h"
 
+#include "child.h"
 #include "truth_cache.h"
 #include "truth_contact.h"
 #include "truth_forms.h"
@@ -96,6 +97,8 @@ static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error)
     ck_Status status = ck_trajectory_create(path, model, error);
     int frames = truth->form->is_static ? 1 : model->frame_count + 1;
     for (int frame = 0; frame < frames && !status; frame++) {
+        status = ck_child_check(error);
+        if (status) break;
         status = truth->form->at(model, frame * model->step, ck_trajectory_position(path, frame),
                                  ck_trajectory_velocity(path, frame), error);
         path->frame_count = frame + 1;
