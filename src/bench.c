@@ -1,5 +1,6 @@
 #include "bench.h"
 
+#include "clock.h"
 #include "engine.h"
 #include "kernel.h"
 #include "scene.h"
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define MAX_ROUNDS 99
 // How long a repeat lasts at least, s: far above the clock's grain.
@@ -50,12 +50,6 @@ typedef struct Entrant {
     const char *reason; // why there is no time
 } Entrant;
 
-static double thread_cpu(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 // A body of 1 m and 0.2 kg in gravity, let go level: k = 1000 N/m along, 500 across. A substep is half of the explicit
 // bound, so that every engine steps alike.
 static ck_Status build(ck_Model *model, const Body *body, ck_Error *error) {
@@ -85,10 +79,10 @@ static ck_Status build(ck_Model *model, const Body *body, ck_Error *error) {
 
 // CPU time of a substep, s.
 static double time_frames(Entrant *entrant, int frames) {
-    double start = thread_cpu();
+    double start = ck_thread_cpu();
     for (int i = 0; i < frames && !entrant->reason; i++)
         if (entrant->engine->step(entrant->state) != CK_STEP_OK) entrant->reason = "did not get through its steps";
-    return (thread_cpu() - start) / frames / SUBSTEPS;
+    return (ck_thread_cpu() - start) / frames / SUBSTEPS;
 }
 
 // Creates an engine's world and finds how many frames make a repeat.
@@ -189,9 +183,9 @@ CK_KERNEL static double multiply_add(double *lanes) {
 static double find_peak(void) {
     double lanes[PEAK_LANES] = {0}, best = 0, sum = 0;
     for (int i = 0; i < 20; i++) {
-        double start = thread_cpu();
+        double start = ck_thread_cpu();
         sum += multiply_add(lanes);
-        best = fmax(best, 2.0 * PEAK_LANES * PEAK_ROUNDS / (thread_cpu() - start));
+        best = fmax(best, 2.0 * PEAK_LANES * PEAK_ROUNDS / (ck_thread_cpu() - start));
     }
     return sum >= 0 ? best : NAN;
 }

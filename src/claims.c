@@ -1,5 +1,6 @@
 #include "claims.h"
 
+#include "clock.h"
 #include "engine.h"
 #include "model.h"
 #include "path.h"
@@ -12,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 // Beyond this many times its length a bar has blown up, finite or not.
 #define BLOWN_UP 1000
@@ -134,12 +134,6 @@ static void measure(const ck_Model *model, const double *x, const double *v, dou
     value[ENERGY] = energy;
 }
 
-static double thread_cpu(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 static void start_range(Outcome *outcome) {
     for (int i = 0; i < MEASURE_COUNT; i++) {
         outcome->low[i] = INFINITY;
@@ -160,9 +154,9 @@ static ck_Status follow(Outcome *outcome, const ck_Engine *engine, const ck_Mode
     *outcome = (Outcome){.blown_up_at = NAN, .frame = model->step};
     start_range(outcome);
     for (; frame < frames && isnan(outcome->blown_up_at); frame++) {
-        double start = thread_cpu();
+        double start = ck_thread_cpu();
         ck_StepResult result = ck_engine_advance(engine, world, model, frame);
-        cpu += thread_cpu() - start;
+        cpu += ck_thread_cpu() - start;
         engine->read(world, state, velocity);
         measure(model, state, velocity, outcome->value);
         if (result != CK_STEP_OK || !(outcome->value[LONGEST] < BLOWN_UP))
@@ -203,7 +197,7 @@ static void add_outcome(ck_Csv *csv, const Claim *claim, double parameter, const
     add_row(csv, claim, parameter, "realtime_factor", "1", outcome->frame / outcome->frame_cpu, NAN, NAN);
 }
 
-static ck_Status load(ck_Scene *scene, ck_Model *model, const char *scenes, const char *name, ck_Error *error) {
+ck_Status ck_claims_load(ck_Scene *scene, ck_Model *model, const char *scenes, const char *name, ck_Error *error) {
     char file[100];
     snprintf(file, sizeof file, "%s.yaml", name);
     char *path = ck_path_join(scenes, file);
@@ -250,7 +244,7 @@ ck_Status ck_claims_write(ck_Csv *csv, const char *scenes, void (*progress)(cons
     for (size_t i = 0; i < sizeof claims / sizeof *claims && !status; i++) {
         ck_Scene scene = {0};
         ck_Model model = {0};
-        status = load(&scene, &model, scenes, claims[i].scene, error);
+        status = ck_claims_load(&scene, &model, scenes, claims[i].scene, error);
         if (!status) status = sweep(csv, &claims[i], &model, progress, error);
         ck_model_free(&model);
         ck_scene_free(&scene);

@@ -3,6 +3,8 @@
 #define CK_CLAIMS_H
 
 #include "csv_file.h"
+#include "model.h"
+#include "scene.h"
 #include "status.h"
 
 extern const char *const ck_claims_columns[], *const ck_quirks_columns[];
@@ -17,5 +19,8 @@ ck_Status ck_claims_write(ck_Csv *csv, const char *scenes, void (*progress)(cons
 // Adds a row for each quirk: what the origin makes of a small experiment with it and without, and what physics does.
 // Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
 ck_Status ck_quirks_write(ck_Csv *csv, const char *scenes, ck_Error *error);
+
+// Loads a scene by its name from a directory. Free both in any case. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
+ck_Status ck_claims_load(ck_Scene *scene, ck_Model *model, const char *scenes, const char *name, ck_Error *error);
 
 #endif

@@ -19,12 +19,6 @@ ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double 
     return CK_OK;
 }
 
-// out = a without its part along n
-static void tangential(double *out, const double *a, const double *n) {
-    memcpy(out, a, 3 * sizeof(double));
-    ck_add_scaled(out, -ck_dot(a, n), n);
-}
-
 static void add_impulse(ck_Contact *contact, double mass, const double *before, const double *after) {
     ck_add_scaled(contact->impulse, mass, after);
     ck_add_scaled(contact->impulse, -mass, before);
@@ -37,7 +31,7 @@ static void strike(const ck_Contact *contact, const ck_Collider *collider, const
     if (!(speed > 0)) return;
     bool rests = speed <= 2 * fabs(ck_dot(a, normal)) * contact->dt;
     double jump = (rests ? 1 : 1 + collider->restitution) * speed;
-    tangential(along, v, normal);
+    ck_tangential(along, v, normal);
     double sliding = ck_length(along);
     ck_add_scaled(v, jump, normal);
     if (sliding > 0) ck_add_scaled(v, -fmin(1, collider->friction * jump / sliding), along);
@@ -53,7 +47,7 @@ static double pressing(const ck_Collider *collider, const double *normal, const 
 static bool hold(const ck_Collider *collider, const double *normal, double dt, const double *v, double *a) {
     double press = pressing(collider, normal, v, a), along[3], drive[3];
     if (!(press > 0)) return false;
-    tangential(along, v, normal);
+    ck_tangential(along, v, normal);
     ck_add_scaled(a, -ck_dot(a, normal), normal);
     memcpy(drive, a, sizeof drive);
     double sliding = ck_length(along), driving = ck_length(drive), friction = collider->friction * press;
@@ -230,7 +224,7 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, doub
         memcpy(before, x, sizeof before);
         ck_add_scaled(x, -gap, normal);
         ck_subtract(way, x, start);
-        tangential(along, way, normal);
+        ck_tangential(along, way, normal);
         double sliding = ck_length(along);
         if (sliding > 0) ck_add_scaled(x, -fmin(1, collider->friction * -gap / sliding), along);
         ck_subtract(way, x, before);

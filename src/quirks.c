@@ -1,9 +1,7 @@
 // One small experiment for each quirk of the origins, in their own units.
 #include "claims.h"
 #include "engine_list.h"
-#include "path.h"
 #include "random.h"
-#include "scene.h"
 #include "seed_cloth.h"
 #include "seed_tecido.h"
 #include "vector.h"
@@ -137,18 +135,8 @@ static ck_Status pendulum(double *value, bool mended, const char *scenes, ck_Err
     return CK_OK;
 }
 
-// Loads a seed's scene for one experiment.
-static ck_Status load(ck_Scene *scene, ck_Model *model, const char *scenes, const char *file, ck_Error *error) {
-    char *path = ck_path_join(scenes, file);
-    if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    ck_Status status = ck_scene_load(scene, path, error);
-    if (!status) status = ck_model_build(model, scene, error);
-    free(path);
-    return status;
-}
-
 // Runs a scene's model, once changed, for some frames and hands its end to measure.
-static ck_Status run_scene(double *value, const char *scenes, const char *file, uint32_t sweeps, uint32_t mended,
+static ck_Status run_scene(double *value, const char *scenes, const char *name, uint32_t sweeps, uint32_t mended,
                            int frames, void (*change)(ck_Model *model),
                            double (*measure)(const ck_Model *model, const double *x, const double *v),
                            ck_Error *error) {
@@ -156,7 +144,7 @@ static ck_Status run_scene(double *value, const char *scenes, const char *file, 
     ck_Model model = {0};
     ck_Tecido *tecido = NULL;
     double *velocity = NULL;
-    ck_Status status = load(&scene, &model, scenes, file, error);
+    ck_Status status = ck_claims_load(&scene, &model, scenes, name, error);
     if (!status) {
         if (change) change(&model);
         velocity = calloc(3 * (size_t)model.particle_count, sizeof *velocity);
@@ -191,7 +179,7 @@ static void slacken(ck_Model *model) {
 }
 
 static ck_Status first_frame(double *value, bool mended, const char *scenes, ck_Error *error) {
-    return run_scene(value, scenes, "seed_tecido_rope.yaml", 20, 0, 1, mended ? slacken : NULL, fastest, error);
+    return run_scene(value, scenes, "seed_tecido_rope", 20, 0, 1, mended ? slacken : NULL, fastest, error);
 }
 
 static void disturb(ck_Model *model) {
@@ -214,7 +202,7 @@ static double longest_bar(const ck_Model *model, const double *x, const double *
 }
 
 static ck_Status one_sweep(double *value, bool mended, const char *scenes, ck_Error *error) {
-    return run_scene(value, scenes, "seed_tecido_flag.yaml", 1, mended ? CK_TECIDO_INTERLEAVED : 0, 300, disturb,
+    return run_scene(value, scenes, "seed_tecido_flag", 1, mended ? CK_TECIDO_INTERLEAVED : 0, 300, disturb,
                      longest_bar, error);
 }
 
@@ -244,8 +232,8 @@ static double mirror_error(const ck_Model *model, const double *x, const double 
 }
 
 static ck_Status bias(double *value, bool mended, const char *scenes, ck_Error *error) {
-    return run_scene(value, scenes, "seed_tecido_flag.yaml", 20, mended ? CK_TECIDO_ONE_WAY : 0, 15, mirror,
-                     mirror_error, error);
+    return run_scene(value, scenes, "seed_tecido_flag", 20, mended ? CK_TECIDO_ONE_WAY : 0, 15, mirror, mirror_error,
+                     error);
 }
 
 // What the second origin's collision makes of one particle: at (0, 0, 0) on a surface that looks up.

@@ -1,10 +1,11 @@
 #include "runner.h"
 
+#include "clock.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 const char *const ck_run_status_names[CK_RUN_STATUS_COUNT] = {
     "ok",      "unsettled", "overstretched", "energy_gain", "diverged",
@@ -28,12 +29,6 @@ typedef struct Job {
     int frames; // to step
 } Job;
 
-static double thread_cpu(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 static void *create(const Job *job) {
     void *state = NULL;
     Report *report = job->report;
@@ -52,9 +47,9 @@ static void measure(void *context) {
     ck_engine_read(engine, state, &job->run->trajectory, 0);
     report->frame_count = 1;
     while (report->frame_count <= job->frames) {
-        double start = thread_cpu();
+        double start = ck_thread_cpu();
         report->step = ck_engine_advance(engine, state, job->run->model, report->frame_count - 1);
-        report->cpu += thread_cpu() - start;
+        report->cpu += ck_thread_cpu() - start;
         if (report->step) break;
         ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
     }
@@ -73,9 +68,9 @@ static void time_frames(void *context) {
     state = create(job);
     if (report->status) return;
     for (int i = 0; i < job->frames; i++) {
-        double start = thread_cpu();
+        double start = ck_thread_cpu();
         report->step = ck_engine_advance(engine, state, job->run->model, i);
-        double cpu = thread_cpu() - start;
+        double cpu = ck_thread_cpu() - start;
         report->cpu += cpu;
         report->worst_step = fmax(report->worst_step, cpu);
         if (report->step) break;

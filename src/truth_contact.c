@@ -44,12 +44,6 @@ static void move_all(const ck_Model *model, const double *way, const double *spe
     }
 }
 
-// out = a without its part along n
-static void tangential(double *out, const double *a, const double *n) {
-    memcpy(out, a, 3 * sizeof(double));
-    ck_add_scaled(out, -ck_dot(a, n), n);
-}
-
 // Height and speed of a bouncing point at a time, from gap and speed at the start.
 static void bounce(double *height, double *speed, double gap, double start, double g, double restitution, double time) {
     double first = (start + sqrt(start * start + 2 * g * gap)) / g, impact = sqrt(start * start + 2 * g * gap);
@@ -81,8 +75,8 @@ ck_Status ck_truth_bounce(const ck_Model *model, double time, double *position, 
     double along[3], drift[3];
     bool fits = read_contact(&contact, model, CK_PLANE) && contact.gap >= -1e-9 * model->size;
     if (fits) {
-        tangential(along, contact.field, contact.normal);
-        tangential(drift, contact.velocity, contact.normal);
+        ck_tangential(along, contact.field, contact.normal);
+        ck_tangential(drift, contact.velocity, contact.normal);
         fits = ck_length(along) <= 1e-12 * contact.press &&
                (contact.collider->friction == 0 || ck_length(drift) <= 1e-12 * ck_length(contact.velocity));
     }
@@ -121,7 +115,7 @@ ck_Status ck_truth_slide(const ck_Model *model, double time, double *position, d
     bool fits = read_contact(&contact, model, CK_PLANE) && fabs(contact.gap) <= 1e-9 * model->size &&
                 fabs(ck_dot(contact.velocity, contact.normal)) <= 1e-12 * ck_length(contact.velocity);
     if (fits) {
-        tangential(drive, contact.field, contact.normal);
+        ck_tangential(drive, contact.field, contact.normal);
         const double *direction = ck_length(contact.velocity) > 0 ? contact.velocity : drive;
         if (ck_length(direction) > 0) ck_add_scaled(line, 1 / ck_length(direction), direction);
         double across[3];
@@ -188,7 +182,7 @@ ck_Status ck_truth_sphere_slide(const ck_Model *model, double time, double *posi
     if (fits) {
         g = ck_length(contact.field);
         for (int axis = 0; axis < 3; axis++) up[axis] = -contact.field[axis] / g;
-        tangential(down_slope, contact.field, contact.normal);
+        ck_tangential(down_slope, contact.field, contact.normal);
         double steep = ck_length(down_slope), speed = ck_length(contact.velocity);
         const double *direction = steep > 1e-12 * g ? down_slope : contact.velocity;
         double length = ck_length(direction);
@@ -205,7 +199,7 @@ ck_Status ck_truth_sphere_slide(const ck_Model *model, double time, double *posi
     double air = roll_until(&theta, &omega, g / radius, leave_cosine, time);
     // the level direction of its plane
     double level[3];
-    tangential(level, down_slope, up);
+    ck_tangential(level, down_slope, up);
     double length = ck_length(level);
     for (int axis = 0; axis < 3; axis++) {
         level[axis] /= length;

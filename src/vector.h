@@ -22,6 +22,12 @@ static inline void ck_add_scaled(double *out, double scale, const double *a) {
     for (int axis = 0; axis < 3; axis++) out[axis] += scale * a[axis];
 }
 
+// out = a without its part along the unit vector n
+static inline void ck_tangential(double *out, const double *a, const double *n) {
+    double along = ck_dot(a, n);
+    for (int axis = 0; axis < 3; axis++) out[axis] = a[axis] - along * n[axis];
+}
+
 static inline double ck_distance(const double *a, const double *b) {
     double difference[3];
     ck_subtract(difference, a, b);

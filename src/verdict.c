@@ -57,4 +57,8 @@ void ck_verdict(ck_Run *run, const ck_Reference *reference) {
         judge(run, CK_RUN_UNSETTLED, "still moves at the end, faster than %.3g m/s", ck_metric_still_speed(run->model));
     else if (reference->is_static)
         judge(run, CK_RUN_OK, "settled at t = %.4g s of %g s", settled, run->model->duration);
+    double passed = measure(run, "tunnelled", reference);
+    if (run->status == CK_RUN_OK && passed > 0)
+        judge(run, CK_RUN_OK, "ran to t = %g s, but a share of %.3g of its particles passed through a ball",
+              run->model->duration, passed);
 }

@@ -1,0 +1,14 @@
+// What everything is timed with.
+#ifndef CK_CLOCK_H
+#define CK_CLOCK_H
+
+#include <time.h>
+
+// CPU time of the calling thread, s.
+static inline double ck_thread_cpu(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+#endif
