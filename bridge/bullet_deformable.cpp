@@ -139,7 +139,7 @@ ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Setting
     double limit;
     ck_Status status = time_step_limit(model, is_implicit, &limit);
     if (status) return status;
-    *used = ck_Settings{wanted->substeps, 0, 0, 0};
+    *used = ck_Settings{wanted->substeps, 0, 0, 0, 0};
     if (is_implicit) used->iterations = wanted->iterations ? wanted->iterations : 1;
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     ck_bullet_ledger(ledger, model, *used, "btDeformableLagrangianForce",

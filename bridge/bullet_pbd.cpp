@@ -97,7 +97,7 @@ double spring_weight(const ck_Model *model, const ck_Spring &spring) {
 // there is contact 1/240 s.
 void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     uint32_t sweeps = model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model) : 1;
-    *used = ck_Settings{wanted->substeps, wanted->iterations ? wanted->iterations : sweeps, 0, 0};
+    *used = ck_Settings{wanted->substeps, wanted->iterations ? wanted->iterations : sweeps, 0, 0, 0};
     double rate = ck_stability_stiffness_rate(model), limit = rate > 0 ? std::sqrt(0.2 / rate) : INFINITY;
     if (model->terms & CK_TERM_RIGID) limit = ck_stability_bar_time(model, used->iterations);
     for (int i = 0; i < model->spring_count; i++)

@@ -2,7 +2,7 @@
 
 #include "clock.h"
 #include "engine.h"
-#include "kernel.h"
+#include "lanes.h"
 #include "scene.h"
 #include "stability.h"
 

@@ -1,5 +1,6 @@
 #include "native.h"
 
+#include "kernel_projection.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -32,6 +33,7 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
     ck_Status status = ck_contact_create(&native->contact, model, native->dt, error);
+    if (!status) status = ck_waves_create(&native->waves, (int)used->threads, error);
     native->origin = native->contact ? calloc(vectors, sizeof(double)) : native->start;
     if (!native->origin && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (status) {
@@ -50,6 +52,8 @@ void ck_native_destroy(void *state) {
     if (!native) return;
     if (native->contact) free(native->origin);
     free(native->contact);
+    ck_waves_destroy(native->waves);
+    ck_projection_destroy(native->cloth);
     free(native->compliance);
     free(native->gamma);
     free(native->position);

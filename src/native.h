@@ -4,20 +4,25 @@
 
 #include "contact.h"
 #include "engine.h"
+#include "waves.h"
+
+struct ck_ProjectedCloth;
 
 typedef struct ck_Native {
     const ck_Model *model;
     double dt; // s, one substep
     uint32_t substeps, iterations;
-    double *position, *velocity; // [3*n]
-    double *start;               // [3*n] positions at the start of the substep
-    double *origin;              // [3*n] what a substep's velocity is measured from: start, but for impacts
-    double *other_velocity;      // [3*n] predicted (Verlet), or of one substep earlier (bars)
-    double *acceleration;        // [3*n]
-    double *inverse_mass;        // [n]
-    double *multiplier;          // [springs] of the constraints, kg·m (force·dt²)
-    double *compliance, *gamma;  // [springs] XPBD's α̃ and γ̃, else NULL
-    ck_Contact *contact;         // NULL without colliders
+    double *position, *velocity;     // [3*n]
+    double *start;                   // [3*n] positions at the start of the substep
+    double *origin;                  // [3*n] what a substep's velocity is measured from: start, but for impacts
+    double *other_velocity;          // [3*n] predicted (Verlet), or of one substep earlier (bars)
+    double *acceleration;            // [3*n]
+    double *inverse_mass;            // [n]
+    double *multiplier;              // [springs] of the constraints, kg·m (force·dt²)
+    double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
+    ck_Contact *contact;             // NULL without colliders
+    ck_Waves *waves;                 // NULL: one thread
+    struct ck_ProjectedCloth *cloth; // NULL: the list of springs
 } ck_Native;
 
 // Terms that every native engine models.

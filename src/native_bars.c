@@ -1,9 +1,11 @@
 // Störmer–Verlet with rigid bars, relaxed Gauss–Seidel and mass-weighted.
 #include "engine_list.h"
 #include "native_leapfrog.h"
+#include "native_projection.h"
 #include "stability.h"
 #include "vector.h"
 
+#include <math.h>
 #include <string.h>
 
 // One Gauss–Seidel sweep over the bars: moves both ends along the bar's direction at the start of the substep until it
@@ -20,8 +22,8 @@ static void sweep(ck_Native *native) {
         ck_subtract(now, b, a);
         ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
         double along = ck_dot(now, old), length_squared = ck_dot(now, now);
-        // a bar that turned by more than 60° in one substep is projected along itself instead
-        if (4 * along * along < length_squared * ck_dot(old, old) || along <= 0) {
+        // a bar that turned by more than some 60° in one substep is projected along itself instead
+        if (along < 0.5 * bar->rest * bar->rest) {
             memcpy(old, now, sizeof old);
             along = length_squared;
         }
@@ -42,23 +44,48 @@ static bool relax(ck_Native *native) {
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps,
-                          .iterations = wanted->iterations ? wanted->iterations : ck_stability_sweeps(model)};
+                          .iterations = wanted->iterations ? wanted->iterations : ck_stability_sweeps(model),
+                          .threads = wanted->threads};
     if (!used->substeps)
         used->substeps = ck_stability_substeps(
             model, fmin(ck_stability_drag_time(model, 0.25), ck_stability_bar_time(model, used->iterations)));
     ck_leapfrog_ledger(ledger, model, used);
 }
 
+static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
+    const double half = 0.5 * native->model->drag * native->dt;
+    ck_ProjectionRule rule = {CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1};
+    ck_model_field(native->model, 0, rule.push);
+    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
+    return ck_native_project_rows(native, &rule, error);
+}
+
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
-    return ck_leapfrog_create((ck_Native **)state, model, used, error);
+    ck_Native *native;
+    ck_Status status = ck_leapfrog_create(&native, model, used, error);
+    if (status) return status;
+    status = lay_in_rows(native, error);
+    if (status)
+        ck_native_destroy(native);
+    else
+        *state = native;
+    return status;
+}
+
+static void release(void *state, int particle) {
+    ck_leapfrog_release(state, particle);
+    // without memory for rows the list of springs goes on
+    lay_in_rows(state, NULL);
 }
 
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
-    ck_native_start_frame(native);
-    for (uint32_t i = 0; i < native->substeps; i++) ck_leapfrog_substep(native, relax);
+    if (!ck_native_step_rows(native)) {
+        ck_native_start_frame(native);
+        for (uint32_t i = 0; i < native->substeps; i++) ck_leapfrog_substep(native, relax);
+    }
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
@@ -73,7 +100,7 @@ const ck_Engine ck_native_bars = {
     .create = create,
     .step = step,
     .read = ck_leapfrog_read,
-    .release = ck_leapfrog_release,
+    .release = release,
     .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

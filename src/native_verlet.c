@@ -86,7 +86,8 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     double zeta = 0.5 * frequency * ck_stability_damping_time(model) + 0.5 * model->drag / fmax(frequency, 1e-300);
     double limit = ck_stability_drag_time(model, 0.25);
     if (frequency > 0) limit = fmin(limit, 0.5 * 2 / frequency * (sqrt(1 + zeta * zeta) - zeta));
-    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
+    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit),
+                          .threads = wanted->threads};
     ck_native_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);
     ck_native_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
     if (model->terms & CK_TERM_DAMPING)
@@ -148,7 +149,7 @@ static ck_StepResult step(void *state) {
     Verlet *verlet = state;
     ck_Native *native = verlet->native;
     if (verlet->cloth) {
-        ck_explicit_step(verlet->cloth, native->substeps);
+        ck_explicit_step(verlet->cloth, native->substeps, native->waves);
         ck_explicit_read(verlet->cloth, native->position, native->velocity);
     } else {
         ck_native_start_frame(native);

@@ -1,6 +1,6 @@
 // Extended position-based dynamics: compliant constraints, one iteration per small substep.
 #include "engine_list.h"
-#include "native.h"
+#include "native_projection.h"
 #include "stability.h"
 #include "vector.h"
 
@@ -79,7 +79,8 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     *used = (ck_Settings){.substeps = wanted->substeps,
                           .iterations = wanted->iterations             ? wanted->iterations
                                         : model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model)
-                                                                       : 1};
+                                                                       : 1,
+                          .threads = wanted->threads};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
     double dt = model->step / used->substeps;
     ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);
@@ -95,6 +96,14 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
                                              model->springs[0].damping / (model->springs[0].stiffness * dt), "c/(k*dt)",
                                              CK_APPROXIMATE});
+}
+
+static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
+    const double dt = native->dt;
+    ck_ProjectionRule rule = {CK_PROJECT_SPRINGS, dt, native->iterations, 1, {0}, 1 / (1 + native->model->drag * dt)};
+    ck_model_field(native->model, 0, rule.push);
+    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= dt;
+    return ck_native_project_rows(native, &rule, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
@@ -115,14 +124,26 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
         native->compliance[i] = 1 / (spring->stiffness * native->dt * native->dt);
         native->gamma[i] = spring->damping / (spring->stiffness * native->dt);
     }
-    *state = native;
-    return CK_OK;
+    status = lay_in_rows(native, error);
+    if (status)
+        ck_native_destroy(native);
+    else
+        *state = native;
+    return status;
+}
+
+static void release(void *state, int particle) {
+    ck_native_release(state, particle);
+    // without memory for rows the list of springs goes on
+    lay_in_rows(state, NULL);
 }
 
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
-    ck_native_start_frame(native);
-    for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    if (!ck_native_step_rows(native)) {
+        ck_native_start_frame(native);
+        for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    }
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
@@ -137,7 +158,7 @@ const ck_Engine ck_native_xpbd = {
     .create = create,
     .step = step,
     .read = ck_native_read,
-    .release = ck_native_release,
+    .release = release,
     .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

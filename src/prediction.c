@@ -286,7 +286,7 @@ static double no_stretch(const Link *link) {
 static bool hang_direct(const ck_Model *model, const ck_Settings *used, double time, double *position,
                         double *velocity) {
     (void)time;
-    return hang(model, &(ck_Settings){used->substeps, 1, 0, 0}, 1, position, velocity, no_stretch);
+    return hang(model, &(ck_Settings){.substeps = used->substeps, .iterations = 1}, 1, position, velocity, no_stretch);
 }
 
 static bool hang_xpbd(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity) {

@@ -1,6 +1,7 @@
 #include "prediction_rest.h"
 
 #include "equilibrium.h"
+#include "kernel_projection.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -60,6 +61,23 @@ static bool apply_sweep(ck_Model *sweeping, const ck_Model *model, ck_Method met
     return true;
 }
 
+// The springs of a model in the order in which the method sweeps over them; NULL without memory.
+static ck_Spring *springs_in_order(const ck_Model *model, ck_Method method) {
+    size_t count = (size_t)model->spring_count;
+    ck_Spring *springs = malloc(sizeof *springs * count);
+    int *order = malloc(sizeof *order * count);
+    bool found = springs && order;
+    if (found && method == CK_METHOD_BULLET_PBD)
+        for (size_t i = 0; i < count; i++) order[i] = (int)i;
+    else if (found)
+        found = !ck_projection_order(model, order);
+    for (size_t i = 0; i < count && found; i++) springs[i] = model->springs[order[i]];
+    free(order);
+    if (found) return springs;
+    free(springs);
+    return NULL;
+}
+
 // The method's rest is the equilibrium of a network whose springs it has softened; how much depends on their tensions
 // there, so that the two are found in turn.
 bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settings *used, const double *truth,
@@ -70,14 +88,14 @@ bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settin
     size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
     double dt = model->step / used->substeps, *moved = malloc(bytes), change = INFINITY;
     double eased = method == CK_METHOD_STOERMER_BARS ? 1 / (1 + 0.5 * model->drag * dt) : 1;
-    ck_Model sweeping = *model;
-    sweeping.springs = malloc(sizeof *sweeping.springs * (size_t)model->spring_count);
-    bool found = moved && sweeping.springs;
-    if (found) memcpy(sweeping.springs, model->springs, sizeof *sweeping.springs * (size_t)model->spring_count);
+    ck_Model ordered = *model, sweeping = *model;
+    ordered.springs = springs_in_order(model, method);
+    sweeping.springs = springs_in_order(model, method);
+    bool found = moved && ordered.springs && sweeping.springs;
     if (found) memcpy(position, truth, bytes);
     for (int round = 0; round < ROUNDS && found && change > 1e-11 * model->size; round++) {
         ck_Equilibrium rest = {0};
-        found = apply_sweep(&sweeping, model, method, dt, eased, position, moved) &&
+        found = apply_sweep(&sweeping, &ordered, method, dt, eased, position, moved) &&
                 !ck_equilibrium_solve(&rest, &sweeping, position, NULL);
         change = 0;
         for (int i = 0; i < model->particle_count && found; i++)
@@ -86,6 +104,7 @@ bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settin
         ck_equilibrium_free(&rest);
     }
     free(moved);
+    free(ordered.springs);
     free(sweeping.springs);
     return found && change < 1e-6 * model->size;
 }

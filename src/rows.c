@@ -42,30 +42,41 @@ bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs) {
 }
 
 ck_Rows ck_rows_of(const ck_Model *model) {
-    int stride = (model->columns + CK_ROWS_LANES - 1) / CK_ROWS_LANES * CK_ROWS_LANES;
-    int rows = model->particle_count / model->columns;
-    size_t size = (size_t)rows * (size_t)stride;
+    int span = (model->columns + CK_LANES - 1) / CK_LANES, rows = model->particle_count / model->columns;
+    if (span < 2) span = 2; // what is shifted by one from the last vector to the first stays inside the row
+    long stride = (long)span * CK_LANES;
     // arrays a multiple of 4 KiB apart would fall on the same lines of the first cache
-    return (ck_Rows){rows, model->columns, stride, size + 3 * CK_ROWS_LANES};
+    return (ck_Rows){rows, model->columns, span, stride, (size_t)(rows * stride) + 3 * CK_LANES};
 }
 
 double *ck_rows_allocate(const ck_Rows *rows, int count) {
     size_t bytes = sizeof(double) * rows->size * (size_t)count;
-    double *block = aligned_alloc(sizeof(double) * CK_ROWS_LANES, bytes);
+    double *block = aligned_alloc(sizeof(double) * CK_LANES, bytes);
     if (block) memset(block, 0, bytes);
     return block;
 }
 
 void ck_rows_load(const ck_Rows *rows, double *const out[3], const double *vectors) {
-    for (int row = 0; row < rows->rows; row++)
-        for (int column = 0; column < rows->columns; column++)
-            for (int axis = 0; axis < 3; axis++)
-                out[axis][row * rows->stride + column] = vectors[3 * (row * rows->columns + column) + axis];
+    for (int row = 0; row < rows->rows; row++, vectors += 3 * rows->columns)
+        for (int lane = 0; lane * rows->span < rows->columns; lane++) {
+            const double *from = vectors + 3 * lane * rows->span;
+            long at = row * rows->stride + lane;
+            for (int i = 0; i < rows->span && lane * rows->span + i < rows->columns; i++, at += CK_LANES)
+                for (int axis = 0; axis < 3; axis++) out[axis][at] = from[3 * i + axis];
+        }
 }
 
 void ck_rows_store(const ck_Rows *rows, double *vectors, double *const from[3]) {
-    for (int row = 0; row < rows->rows; row++)
-        for (int column = 0; column < rows->columns; column++)
-            for (int axis = 0; axis < 3; axis++)
-                vectors[3 * (row * rows->columns + column) + axis] = from[axis][row * rows->stride + column];
+    for (int row = 0; row < rows->rows; row++, vectors += 3 * rows->columns)
+        for (int lane = 0; lane * rows->span < rows->columns; lane++) {
+            double *to = vectors + 3 * lane * rows->span;
+            long at = row * rows->stride + lane;
+            for (int i = 0; i < rows->span && lane * rows->span + i < rows->columns; i++, at += CK_LANES)
+                for (int axis = 0; axis < 3; axis++) to[3 * i + axis] = from[axis][at];
+        }
+}
+
+void ck_rows_mark_paired(const ck_Rows *rows, int reach, double *paired) {
+    for (int column = 0; column < rows->span * CK_LANES; column++)
+        paired[ck_rows_at(rows, 0, column)] = column + reach < rows->columns;
 }

@@ -2,6 +2,7 @@
 #include "fixture.h"
 
 #include "kernel_explicit.h"
+#include "kernel_projection.h"
 #include "reference.h"
 #include "vector.h"
 
@@ -40,8 +41,8 @@ static void compare_explicit(const char *size, const char *springs, const char *
     assert_true(ck_rows_fit(model, &row_springs));
     assert_int_equal(ck_explicit_create(&cloth, model, &row_springs, dt, x, v, a, weight, NULL), CK_OK);
     // in two calls, as two frames are
-    ck_explicit_step(cloth, 60);
-    ck_explicit_step(cloth, 40);
+    ck_explicit_step(cloth, 60, NULL);
+    ck_explicit_step(cloth, 40, NULL);
     for (int i = 0; i < 100; i++) plain_step(model, dt, x, v, predicted, a);
     ck_explicit_read(cloth, state + 4 * count, state + 5 * count);
     double off = 0, moved = 0;
@@ -71,6 +72,142 @@ static void test_explicit(void **state) {
         }
 }
 
+// One spring by its formula, as kernel_projection.h gives it.
+static void plain_project(const ck_Model *model, const ck_ProjectionRule *rule, const ck_Spring *spring,
+                          const double *start, double *x, double *multiplier) {
+    double *a = x + 3 * spring->a, *b = x + 3 * spring->b, now[3], old[3], dt = rule->dt;
+    double weight_a = ck_model_inverse_mass(model, spring->a), weight_b = ck_model_inverse_mass(model, spring->b);
+    if (weight_a + weight_b == 0) return;
+    ck_subtract(now, b, a);
+    ck_subtract(old, start + 3 * spring->b, start + 3 * spring->a);
+    double length = ck_length(now), along = ck_dot(now, old), change;
+    if (rule->projection == CK_PROJECT_BARS) {
+        bool turned = along < 0.5 * spring->rest * spring->rest;
+        const double *way = turned ? now : old;
+        change = -0.5 * (length * length - spring->rest * spring->rest) / (turned ? length * length : along) /
+                 (weight_a + weight_b);
+        ck_add_scaled(a, -weight_a * change, way);
+        ck_add_scaled(b, weight_b * change, way);
+        return;
+    }
+    double compliance = 1 / (spring->stiffness * dt * dt), gamma = spring->damping / (spring->stiffness * dt);
+    double moved = (length * length - along) / length; // ∇C·(x − x_start)
+    change = -(length - spring->rest + compliance * *multiplier + gamma * moved) /
+             ((1 + gamma) * (weight_a + weight_b) + compliance);
+    *multiplier += change;
+    ck_add_scaled(a, -weight_a * change / length, now);
+    ck_add_scaled(b, weight_b * change / length, now);
+}
+
+static void plain_substep(const ck_Model *model, const ck_ProjectionRule *rule, const int *order, double *x, double *v,
+                          double *before) {
+    int count = 3 * model->particle_count;
+    double *start = malloc(sizeof *start * (size_t)count);
+    double *multipliers = calloc((size_t)model->spring_count, sizeof *multipliers);
+    memcpy(start, x, sizeof *start * (size_t)count);
+    memcpy(before, v, sizeof *v * (size_t)count);
+    for (int i = 0; i < count; i++)
+        if (!model->pinned[i / 3]) x[i] += rule->dt * (rule->carry * v[i] + rule->push[i % 3]);
+    for (uint32_t sweep = 0; sweep < rule->iterations; sweep++)
+        for (int i = 0; i < model->spring_count; i++)
+            plain_project(model, rule, &model->springs[order[i]], start, x, &multipliers[order[i]]);
+    for (int i = 0; i < count; i++) v[i] = rule->keep * (x[i] - start[i]) / rule->dt;
+    free(start);
+    free(multipliers);
+}
+
+// Roots and sums rounded otherwise, 1e-16 a substep; sweeps only even them out, substeps let them grow by less than
+// 1e4.
+static void compare_projection(const char *size, const char *springs, ck_Projection projection, uint32_t iterations) {
+    char text[500];
+    snprintf(text, sizeof text,
+             "name: kernel\ncloth: {%s, spacing: 0.1, mass: 1, down: [0, 0, 1]}\nsprings: {%s}\npins: [top_left, 0:2]\n"
+             "noise: {amplitude: 0.01, seed: 5}\nvelocity: [0.3, -0.5, 0.2]\ngravity: [0, -9.81, 1]\n"
+             "time: {duration: 1, step: 0.01}\n",
+             size, springs);
+    ck_Comparison comparison;
+    fixture_load(&comparison, text);
+    const ck_Model *model = &comparison.model;
+    size_t count = 3 * (size_t)model->particle_count;
+    double *state = calloc(6 * count, sizeof *state), *weight = malloc(count * sizeof *weight), dt = 2e-3;
+    double *x = state, *v = state + count, *before = state + 2 * count;
+    int *order = malloc(sizeof *order * (size_t)model->spring_count);
+    ck_ProjectionRule rule = {projection, dt, iterations, 0.99, {0, -9.81 * dt, dt}, 0.98};
+    ck_RowSprings row_springs;
+    ck_ProjectedCloth *cloth;
+    memcpy(x, model->position, count * sizeof *x);
+    memcpy(v, model->velocity, count * sizeof *v);
+    for (int i = 0; i < model->particle_count; i++) weight[i] = ck_model_inverse_mass(model, i);
+    assert_true(ck_projection_fits(model, &row_springs));
+    assert_int_equal(ck_projection_order(model, order), CK_OK);
+    assert_int_equal(ck_projection_create(&cloth, model, &row_springs, &rule, x, v, before, weight, NULL), CK_OK);
+    // in two calls, as two frames are
+    ck_projection_step(cloth, 13, NULL);
+    ck_projection_step(cloth, 37, NULL);
+    for (int i = 0; i < 50; i++) plain_substep(model, &rule, order, x, v, before);
+    ck_projection_read(cloth, state + 3 * count, state + 4 * count, state + 5 * count);
+    double off = 0, moved = 0;
+    for (size_t i = 0; i < 3 * count; i++)
+        off = fmax(off, fabs(state[3 * count + i] - state[i]) * (i < count ? 1 : dt));
+    for (size_t i = 0; i < count; i++) moved = fmax(moved, fabs(x[i] - model->position[i]));
+    assert_near(text, off, 0, 1e-11);
+    assert_true(moved > 1e-2);
+    ck_projection_destroy(cloth);
+    free(order);
+    free(state);
+    free(weight);
+    ck_comparison_free(&comparison);
+}
+
+// One sweep and several, one substep's in a block of interleaved sweeps or its sweeps in several blocks.
+static void test_projection(void **state) {
+    (void)state;
+    static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 9, columns: 19",
+                                        "rows: 12, columns: 33"};
+    static const char *const springs[] = {"stiffness: 100", "stiffness: 100, shear: 50",
+                                          "stiffness: 100, shear: 50, damping: 0.05"};
+    for (size_t size = 0; size < sizeof sizes / sizeof *sizes; size++)
+        for (size_t i = 0; i < sizeof springs / sizeof *springs; i++)
+            for (uint32_t iterations = 1; iterations < 7; iterations += iterations < 3 ? 1 : 3) {
+                compare_projection(sizes[size], springs[i], CK_PROJECT_BARS, iterations);
+                compare_projection(sizes[size], springs[i], CK_PROJECT_SPRINGS, iterations);
+            }
+    compare_projection(sizes[2], "rigid: true", CK_PROJECT_SPRINGS, 3);
+}
+
+// A whole run of an engine, in positions: the same bits with any number of threads.
+static void compare_threads(const ck_Model *model, const ck_Engine *engine, uint32_t threads) {
+    size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
+    double *one = malloc(2 * bytes), *many = malloc(2 * bytes);
+    for (int run = 0; run < 2; run++) {
+        ck_Settings used, wanted = {.substeps = 7, .iterations = 3, .threads = run ? threads : 1};
+        double *x = run ? many : one;
+        void *state;
+        assert_int_equal(engine->create(&state, model, &wanted, &used, NULL, NULL), CK_OK);
+        for (int frame = 0; frame < 4; frame++) assert_int_equal(engine->step(state), CK_STEP_OK);
+        engine->read(state, x, x + bytes / sizeof *x);
+        engine->destroy(state);
+    }
+    if (memcmp(one, many, 2 * bytes)) fail_msg("%s: not the same with %u threads", engine->name, threads);
+    free(one);
+    free(many);
+}
+
+static void test_threads(void **state) {
+    (void)state;
+    static const char *const engines[] = {"native-verlet", "native-bars", "native-xpbd"};
+    ck_Comparison comparison;
+    fixture_load(
+        &comparison,
+        "name: threads\ncloth: {rows: 60, columns: 21, spacing: 0.05, mass: 1, down: [0, 0, 1]}\nsprings: "
+        "{stiffness: 100, shear: 50, damping: 0.01}\npins: [top_left, top_right]\ndrag: 1\ngravity: [0, -9.81, "
+        "0]\ntime: {duration: 1, step: 0.01}\n");
+    for (size_t i = 0; i < 3; i++)
+        for (uint32_t threads = 2; threads < 5; threads++)
+            compare_threads(&comparison.model, ck_engine_find(engines[i]), threads);
+    ck_comparison_free(&comparison);
+}
+
 // A cloth that is not regular is none for rows: a spring less, another stiffness, another mass.
 static void test_fit(void **state) {
     (void)state;
@@ -95,6 +232,7 @@ static void test_fit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_fit)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_projection),
+                                       cmocka_unit_test(test_threads), cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

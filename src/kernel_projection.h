@@ -1,0 +1,50 @@
+// Position constraints on a regular cloth, Gauss–Seidel over rows: rigid bars and compliant springs (XPBD).
+//
+// A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
+// corrected vector by vector: those along it from even columns of a run, then from odd ones, then the row's to the next
+// one, straight down, down right and down left. That is the order of ck_projection_order.
+#ifndef CK_KERNEL_PROJECTION_H
+#define CK_KERNEL_PROJECTION_H
+
+#include "rows.h"
+#include "status.h"
+#include "waves.h"
+
+typedef enum ck_Projection {
+    CK_PROJECT_BARS, // Δx along the direction at the start of the substep, to first order (SHAKE)
+    CK_PROJECT_SPRINGS // Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃) along the direction now (XPBD)
+} ck_Projection;
+
+typedef struct ck_ProjectionRule {
+    ck_Projection projection;
+    double dt;
+    uint32_t iterations;
+    double carry, push[3]; // 1 and m/s
+    double keep;
+} ck_ProjectionRule;
+
+typedef struct ck_ProjectedCloth ck_ProjectedCloth;
+
+// True where the kernel takes a model: a regular cloth without bending springs and colliders.
+bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
+
+// Position, velocity and the velocity a substep earlier, [3*n], are taken over; inverse_mass [n] is 0 where pinned.
+// Memory: 13 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
+// ck_projection_destroy.
+ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Model *model, const ck_RowSprings *springs,
+                               const ck_ProjectionRule *rule, const double *position, const double *velocity,
+                               const double *before, const double *inverse_mass, ck_Error *error);
+void ck_projection_destroy(ck_ProjectedCloth *cloth);
+
+// As many substeps, without allocation; up to four sweeps run interleaved, a few rows apart, which changes no result.
+// The same bits whatever vectors the processor has and however many threads share the waves.
+void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
+
+// [3*n] m, m/s, m/s: before is the velocity of the last substep but one.
+void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before);
+
+// The springs of a model in the order in which a native sweep corrects them, [spring_count]: the kernel's where it
+// takes the model, else the model's. Errors: CK_NO_MEMORY.
+ck_Status ck_projection_order(const ck_Model *model, int *order);
+
+#endif

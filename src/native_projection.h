@@ -1,0 +1,15 @@
+// Where a native position-based solver's cloth runs in rows: native then holds its state at the end of a frame.
+#ifndef CK_NATIVE_PROJECTION_H
+#define CK_NATIVE_PROJECTION_H
+
+#include "kernel_projection.h"
+#include "native.h"
+
+// Lays native's state out in rows where the kernel takes its model; anew where it was before. Errors: CK_NO_MEMORY;
+// native then goes on with its list of springs.
+ck_Status ck_native_project_rows(ck_Native *native, const ck_ProjectionRule *rule, ck_Error *error);
+
+// A frame in rows; false without them.
+bool ck_native_step_rows(ck_Native *native);
+
+#endif
