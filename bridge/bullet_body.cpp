@@ -1,10 +1,13 @@
 #include "bullet_body.hpp"
 
+#include "sweep_order.h"
 #include "vector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <new>
+#include <numeric>
 
 extern "C" const char *ck_bullet_version(void) {
     static char text[24];
@@ -33,10 +36,13 @@ static btVector3 vector_at(const double *values, int index) {
     return btVector3(values[3 * index], values[3 * index + 1], values[3 * index + 2]);
 }
 
-static void add_links(ck_BulletBody &body) {
+static void add_links(ck_BulletBody &body, bool reordered) {
     btSoftBody *soft = body.soft.get();
     btSoftBody::Material *material = soft->appendMaterial();
-    for (int i = 0; i < body.model->spring_count; i++) {
+    std::vector<int> order(body.model->spring_count);
+    std::iota(order.begin(), order.end(), 0);
+    if (reordered && ck_sweep_order(body.model, order.data())) throw std::bad_alloc();
+    for (int i : order) {
         const ck_Spring *spring = &body.model->springs[i];
         if (body.model->pinned[spring->a] && body.model->pinned[spring->b]) continue;
         // without the check for doubles, which searches all links for each one
@@ -52,7 +58,8 @@ static void add_links(ck_BulletBody &body) {
     }
 }
 
-void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, btSoftBodyWorldInfo *info) {
+void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, bool reordered,
+                          btSoftBodyWorldInfo *info) {
     body.model = model;
     body.substeps = substeps;
     body.dt = model->step / substeps;
@@ -68,7 +75,7 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
             mass.push_back(pinned ? 0 : model->mass[i]);
         }
     body.soft = std::make_unique<btSoftBody>(info, model->particle_count, position.data(), mass.data());
-    add_links(body);
+    add_links(body, reordered);
     for (int i = 0; i < model->particle_count; i++) {
         btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
         node.m_v = node.m_vn = vector_at(model->velocity, i);

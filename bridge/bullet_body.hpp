@@ -37,8 +37,10 @@ struct ck_BulletBody {
     std::vector<const ck_Spring *> spring; // of each link
 };
 
+//   reordered  links in the order in which native sweeps over rows, in which neighbours do not wait for each other
 // Builds nodes and links with the scene's rest lengths, which Bullet would overwrite on its first step if let.
-void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, btSoftBodyWorldInfo *info);
+void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, bool reordered,
+                          btSoftBodyWorldInfo *info);
 
 // Position and velocity in the model's particle order: [3*n] m, [3*n] m/s.
 void ck_bullet_body_read(const ck_BulletBody &body, double *position, double *velocity);

@@ -139,7 +139,8 @@ ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Setting
     double limit;
     ck_Status status = time_step_limit(model, is_implicit, &limit);
     if (status) return status;
-    *used = ck_Settings{wanted->substeps, 0, 0, 0, 0};
+    *used = ck_Settings{};
+    used->substeps = wanted->substeps;
     if (is_implicit) used->iterations = wanted->iterations ? wanted->iterations : 1;
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     ck_bullet_ledger(ledger, model, *used, "btDeformableLagrangianForce",
@@ -179,7 +180,7 @@ std::unique_ptr<Deformable> build_world(const ck_Model *model, const ck_Settings
     world.getWorldInfo().m_gravity = gravity;
     world.getWorldInfo().m_sparsesdf.Initialize();
 
-    ck_bullet_body_build(state->body, model, used.substeps, &world.getWorldInfo());
+    ck_bullet_body_build(state->body, model, used.substeps, false, &world.getWorldInfo());
     state->colliders.add(world, state->body, world.getWorldInfo());
     btSoftBody *soft = state->body.soft.get();
     soft->m_cfg.kDF = 1;
@@ -251,6 +252,7 @@ extern "C" const ck_Engine ck_bullet_implicit = {
     .version = ck_bullet_version,
     .method = CK_METHOD_IMPLICIT_EULER,
     .terms = terms,
+    .shares_steps = false,
     .order = 1,
     .create = create_implicit,
     .step = step,
@@ -267,6 +269,7 @@ extern "C" const ck_Engine ck_bullet_explicit = {
     .version = ck_bullet_version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = terms,
+    .shares_steps = false,
     .order = 1,
     .create = create_explicit,
     .step = step,

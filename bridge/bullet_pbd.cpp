@@ -82,8 +82,10 @@ struct ClassicState {
 // The share κ = kLST of a link's error that one iteration removes.
 // n = 1: the static map κ = q/(1 + q/2), q = k·dt²·W, which hangs a chain within 0.2 % for k·dt²/m ≤ 0.02.
 // n > 1: κ = 1 − (1 + q)^(−1/n), exact for one free mass. Both end at 1, beyond which a link is unsafe.
-double kappa(const ck_Spring &spring, double weight, double dt, uint32_t iterations) {
+double kappa(const ck_Spring &spring, double weight, double dt, const ck_Settings &used) {
+    if (used.klst > 0) return used.klst;
     if (std::isinf(spring.stiffness)) return 1;
+    uint32_t iterations = used.iterations;
     double q = spring.stiffness * dt * dt * weight;
     return iterations == 1 ? std::fmin(1, q / (1 + q / 2)) : 1 - std::pow(1 + q, -1.0 / iterations);
 }
@@ -97,7 +99,11 @@ double spring_weight(const ck_Model *model, const ck_Spring &spring) {
 // there is contact 1/240 s.
 void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     uint32_t sweeps = model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model) : 1;
-    *used = ck_Settings{wanted->substeps, wanted->iterations ? wanted->iterations : sweeps, 0, 0, 0};
+    *used = ck_Settings{};
+    used->substeps = wanted->substeps;
+    used->iterations = wanted->iterations ? wanted->iterations : sweeps;
+    used->klst = wanted->klst;
+    used->reordered = wanted->reordered;
     double rate = ck_stability_stiffness_rate(model), limit = rate > 0 ? std::sqrt(0.2 / rate) : INFINITY;
     if (model->terms & CK_TERM_RIGID) limit = ck_stability_bar_time(model, used->iterations);
     for (int i = 0; i < model->spring_count; i++)
@@ -112,10 +118,11 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
         const ck_Spring *spring = ck_model_spring_of_kind(model, static_cast<ck_SpringKind>(kind));
         if (!spring) continue;
-        double value = kappa(*spring, spring_weight(model, *spring), dt, used->iterations);
+        double value = kappa(*spring, spring_weight(model, *spring), dt, *used);
         ck_ledger_add(ledger,
                       {ck_stiffness_names[kind], spring->stiffness, "N/m", "Material::m_kLST", value,
-                       used->iterations == 1
+                       used->klst > 0 ? "as set; Link::m_c0 corrected to Hooke each step"
+                       : used->iterations == 1
                            ? "min(1, q/(1 + q/2)), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke each step"
                            : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke each step",
                        CK_APPROXIMATE});
@@ -208,14 +215,14 @@ std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
     auto state = std::make_unique<Classic>();
     state->info.m_gravity = btVector3(model->gravity[0], model->gravity[1], model->gravity[2]);
     state->info.m_sparsesdf.Initialize();
-    ck_bullet_body_build(state->body, model, used.substeps, &state->info);
+    ck_bullet_body_build(state->body, model, used.substeps, used.reordered, &state->info);
     btSoftBody &soft = *state->body.soft;
     soft.m_cfg.piterations = static_cast<int>(used.iterations);
     soft.m_cfg.kDF = 1;
     soft.m_cfg.kDP = 1 - 1 / (1 + model->drag * state->body.dt);
     for (const ck_Spring *spring : state->body.spring) {
         double weight = spring_weight(model, *spring);
-        state->kappa_over_weight.push_back(kappa(*spring, weight, state->body.dt, used.iterations) / weight);
+        state->kappa_over_weight.push_back(kappa(*spring, weight, state->body.dt, used) / weight);
     }
     state->field_force.assign(soft.m_nodes.size(), btVector3(model->force[0], model->force[1], model->force[2]));
     if (model->collider_count) surround(*state);
@@ -302,6 +309,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
              CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
+    .shares_steps = false,
     .order = 1,
     .create = create,
     .step = step,

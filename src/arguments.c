@@ -11,7 +11,9 @@
 const char ck_arguments_help[] =
     "  --out DIR            write the CSVs into DIR\n"
     "  --engine NAME        run this engine only; may be given several times\n"
-    "  --set ENGINE.KEY=N   substeps, iterations, relaxation or mended of an engine, over the scene's own\n"
+    "  --set ENGINE.KEY=N   substeps, iterations, relaxation, compliance, klst, mended, reordered or threads of an\n"
+    "                       engine, over the scene's own\n"
+    "  --threads N          that share a step of native-verlet, native-bars and native-xpbd on regular cloths\n"
     "  --repeats N          timed repeats, 0 to 99 (usually 5)\n"
     "  --budget S           CPU seconds per timed repeat at most (usually 2)\n"
     "  --time-limit S       wall seconds that one run may take (usually 900)\n"
@@ -20,7 +22,7 @@ const char ck_arguments_help[] =
     "  --help               this text\n"
     "\nA SCENE is a path, or a bare name that stands for scenes/NAME.yaml.\n";
 
-enum { OUT, ENGINE, SET, REPEATS, BUDGET, TIME_LIMIT, MEMORY_LIMIT, SEED };
+enum { OUT, ENGINE, SET, REPEATS, BUDGET, TIME_LIMIT, MEMORY_LIMIT, SEED, THREADS };
 
 static const struct option option_table[] = {
     {"out", required_argument, NULL, OUT},
@@ -31,6 +33,7 @@ static const struct option option_table[] = {
     {"time-limit", required_argument, NULL, TIME_LIMIT},
     {"memory-limit", required_argument, NULL, MEMORY_LIMIT},
     {"seed", required_argument, NULL, SEED},
+    {"threads", required_argument, NULL, THREADS},
     {NULL, 0, NULL, 0},
 };
 
@@ -65,6 +68,13 @@ static ck_Status add_engine(ck_Arguments *arguments, const char *name, ck_Error 
     return CK_OK;
 }
 
+static ck_Status fail_unknown_key(const char *text, ck_Error *error) {
+    char known[200] = "";
+    for (int i = 0, used = 0; i < CK_SETTING_COUNT; i++)
+        used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", i ? ", " : "", ck_setting_keys[i].name);
+    return ck_fail(error, CK_BAD_INPUT, "--set %s: the key must be one of %s", text, known);
+}
+
 static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error) {
     char name[64], key[32];
     int used = 0;
@@ -78,22 +88,22 @@ static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Erro
     *override = (ck_Override){0};
     double number;
     ck_Status status = find_engine(&override->engine, name, error);
-    if (!status) status = read_number(&number, text + used, 0, 1e6, "--set", error);
+    ck_Setting setting = ck_setting_find(key);
+    if (!status && setting == CK_SETTING_COUNT) status = fail_unknown_key(text, error);
+    if (!status) status = read_number(&number, text + used, 0, ck_setting_keys[setting].largest, "--set", error);
     if (status) return status;
-    bool whole = floor(number) == number;
-    if (!strcmp(key, "substeps") && whole)
-        override->settings.substeps = (uint32_t)number;
-    else if (!strcmp(key, "iterations") && whole)
-        override->settings.iterations = (uint32_t)number;
-    else if (!strcmp(key, "mended") && whole)
-        override->settings.mended = (uint32_t)number;
-    else if (!strcmp(key, "relaxation"))
-        override->settings.relaxation = number;
-    else
-        return ck_fail(
-            error, CK_BAD_INPUT,
-            "--set %s: the key must be substeps, iterations or mended, which are whole numbers, or relaxation", text);
+    if (ck_setting_keys[setting].is_whole && floor(number) != number)
+        return ck_fail(error, CK_BAD_INPUT, "--set %s: %s must be a whole number", text, key);
+    ck_setting_set(&override->settings, setting, number);
     return CK_OK;
+}
+
+// As --set ENGINE.threads=N of every engine that can share its steps.
+static ck_Status set_threads(ck_Arguments *arguments, int engine, double threads, ck_Error *error) {
+    char text[64];
+    if (!ck_engine_at(engine)->shares_steps) return CK_OK;
+    snprintf(text, sizeof text, "%s.threads=%g", ck_engine_at(engine)->name, threads);
+    return add_override(arguments, text, error);
 }
 
 static ck_Status read_option(ck_Arguments *arguments, int option, const char *value, ck_Error *error) {
@@ -117,6 +127,10 @@ static ck_Status read_option(ck_Arguments *arguments, int option, const char *va
     case SEED:
         status = read_number(&number, value, 0, 1e15, "--seed", error);
         if (!status) options->seed = (uint64_t)number;
+        break;
+    case THREADS:
+        status = read_number(&number, value, 1, ck_setting_keys[CK_SET_THREADS].largest, "--threads", error);
+        for (int i = 0; i < ck_engine_count() && !status; i++) status = set_threads(arguments, i, number, error);
         break;
     default: return CK_BAD_INPUT;
     }

@@ -11,4 +11,11 @@ static inline double ck_thread_cpu(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+// Time on the wall, s, from an arbitrary start.
+static inline double ck_wall(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
 #endif

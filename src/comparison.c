@@ -53,11 +53,7 @@ static ck_Settings settings_of(const ck_Engine *engine, const ck_Model *model, c
     ck_Settings settings = ck_engine_settings(engine, model);
     for (int i = 0; i < options->override_count; i++) {
         const ck_Override *override = &options->overrides[i];
-        if (override->engine != engine) continue;
-        if (override->settings.substeps) settings.substeps = override->settings.substeps;
-        if (override->settings.iterations) settings.iterations = override->settings.iterations;
-        if (override->settings.mended) settings.mended = override->settings.mended;
-        if (override->settings.relaxation > 0) settings.relaxation = override->settings.relaxation;
+        if (override->engine == engine) ck_settings_override(&settings, &override->settings);
     }
     return settings;
 }

@@ -35,8 +35,9 @@ typedef struct ck_Engine {
     const char *family; // whose code it is: "native", "Bullet", "ODE"
     const char *(*version)(void);
     ck_Method method;
-    unsigned terms; // ck_Term bits it can model
-    int order;      // order of convergence of its elastic motion; 0: it models no elasticity
+    unsigned terms;    // ck_Term bits it can model
+    bool shares_steps; // among threads, with the same result
+    int order;         // order of convergence of its elastic motion; 0: it models no elasticity
 
     // Translates the model into the engine's own parameters, in one named function, and builds its world.
     //   wanted  what the user sets, 0 where the engine's rule decides;  used  out, nothing left at 0 that the engine

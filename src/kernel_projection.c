@@ -1,5 +1,7 @@
 #include "kernel_projection.h"
 
+#include "sweep_order.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -269,7 +271,8 @@ bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs) {
 
 static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, const ck_ProjectionRule *rule) {
     const double light = cloth->lightness, dt = rule->dt;
-    bool is_elastic = rule->projection == CK_PROJECT_SPRINGS && isfinite(springs->stiffness[CK_STRUCTURAL]);
+    bool is_elastic =
+        rule->projection == CK_PROJECT_SPRINGS && (rule->compliance > 0 || isfinite(springs->stiffness[CK_STRUCTURAL]));
     cloth->rule = *rule;
     cloth->terms = rule->projection == CK_PROJECT_BARS ? BARS : 0;
     if (is_elastic) cloth->terms |= (springs->damping > 0 ? DAMPED : 0) | (rule->iterations > 1 ? REPEATED : 0);
@@ -277,8 +280,9 @@ static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, con
         Compliant *compliant = &cloth->compliant[kind];
         cloth->rest[kind] = springs->rest[kind];
         if (springs->rest[kind] == 0) continue;
-        compliant->compliance = 1 / (springs->stiffness[kind] * dt * dt);
-        compliant->gamma = springs->damping / (springs->stiffness[kind] * dt);
+        double stiffness = rule->compliance > 0 ? 1 / rule->compliance : springs->stiffness[kind];
+        compliant->compliance = 1 / (stiffness * dt * dt);
+        compliant->gamma = springs->damping / (stiffness * dt);
         compliant->one_free = 1 / ((1 + compliant->gamma) * light + compliant->compliance);
         compliant->both_free = 1 / ((1 + compliant->gamma) * 2 * light + compliant->compliance);
     }
@@ -355,7 +359,7 @@ static long when_visited(const ck_Rows *rows, const ck_Spring *spring) {
     return (row * COLOURS + colour) * rows->stride + ck_rows_at(rows, 0, column);
 }
 
-ck_Status ck_projection_order(const ck_Model *model, int *order) {
+ck_Status ck_sweep_order(const ck_Model *model, int *order) {
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
     if (!ck_projection_fits(model, &springs)) return CK_OK;

@@ -2,7 +2,7 @@
 //
 // A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
 // corrected vector by vector: those along it from even columns of a run, then from odd ones, then the row's to the next
-// one, straight down, down right and down left. That is the order of ck_projection_order.
+// one, straight down, down right and down left. That is the order of ck_sweep_order.
 #ifndef CK_KERNEL_PROJECTION_H
 #define CK_KERNEL_PROJECTION_H
 
@@ -21,6 +21,7 @@ typedef struct ck_ProjectionRule {
     uint32_t iterations;
     double carry, push[3]; // 1 and m/s
     double keep;
+    double compliance; // m/N of every spring; 0: 1/k of each
 } ck_ProjectionRule;
 
 typedef struct ck_ProjectedCloth ck_ProjectedCloth;
@@ -42,9 +43,5 @@ void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *w
 
 // [3*n] m, m/s, m/s: before is the velocity of the last substep but one.
 void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before);
-
-// The springs of a model in the order in which a native sweep corrects them, [spring_count]: the kernel's where it
-// takes the model, else the model's. Errors: CK_NO_MEMORY.
-ck_Status ck_projection_order(const ck_Model *model, int *order);
 
 #endif

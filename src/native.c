@@ -17,6 +17,7 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
     *native = (ck_Native){
         .model = model,
         .dt = model->step / used->substeps,
+        .used = *used,
         .substeps = used->substeps,
         .iterations = used->iterations,
         .position = malloc(vectors * sizeof(double)),

@@ -11,6 +11,7 @@ struct ck_ProjectedCloth;
 typedef struct ck_Native {
     const ck_Model *model;
     double dt; // s, one substep
+    ck_Settings used;
     uint32_t substeps, iterations;
     double *position, *velocity;     // [3*n]
     double *start;                   // [3*n] positions at the start of the substep

@@ -54,7 +54,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 
 static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
     const double half = 0.5 * native->model->drag * native->dt;
-    ck_ProjectionRule rule = {CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1};
+    ck_ProjectionRule rule = {CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1, 0};
     ck_model_field(native->model, 0, rule.push);
     for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
     return ck_native_project_rows(native, &rule, error);
@@ -96,6 +96,7 @@ const ck_Engine ck_native_bars = {
     .version = ck_native_version,
     .method = CK_METHOD_STOERMER_BARS,
     .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
+    .shares_steps = true,
     .order = 0,
     .create = create,
     .step = step,

@@ -173,6 +173,7 @@ const ck_Engine ck_native_verlet = {
     .version = ck_native_version,
     .method = CK_METHOD_VELOCITY_VERLET,
     .terms = CK_NATIVE_TERMS,
+    .shares_steps = true,
     .order = 2,
     .create = create,
     .step = step,

@@ -75,11 +75,17 @@ static double time_step_limit(const ck_Model *model, uint32_t iterations) {
     return limit;
 }
 
+// m/N
+static double compliance_of(const ck_Spring *spring, const ck_Settings *used) {
+    return used->compliance > 0 ? used->compliance : 1 / spring->stiffness;
+}
+
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps,
                           .iterations = wanted->iterations             ? wanted->iterations
                                         : model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model)
                                                                        : 1,
+                          .compliance = wanted->compliance,
                           .threads = wanted->threads};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
     double dt = model->step / used->substeps;
@@ -89,18 +95,22 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
         if (!spring) continue;
         ck_ledger_add(ledger,
                       (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "compliance",
-                                     1 / (spring->stiffness * dt * dt),
-                                     "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations", CK_APPROXIMATE});
+                                     compliance_of(spring, used) / (dt * dt),
+                                     used->compliance > 0 ? "as set, over dt^2"
+                                                          : "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations",
+                                     CK_APPROXIMATE});
     }
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
-                                             model->springs[0].damping / (model->springs[0].stiffness * dt), "c/(k*dt)",
-                                             CK_APPROXIMATE});
+                                             model->springs[0].damping * compliance_of(&model->springs[0], used) / dt,
+                                             "c*compliance/dt", CK_APPROXIMATE});
 }
 
 static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
     const double dt = native->dt;
-    ck_ProjectionRule rule = {CK_PROJECT_SPRINGS, dt, native->iterations, 1, {0}, 1 / (1 + native->model->drag * dt)};
+    ck_ProjectionRule rule = {
+        CK_PROJECT_SPRINGS,     dt, native->iterations, 1, {0}, 1 / (1 + native->model->drag * dt),
+        native->used.compliance};
     ck_model_field(native->model, 0, rule.push);
     for (int axis = 0; axis < 3; axis++) rule.push[axis] *= dt;
     return ck_native_project_rows(native, &rule, error);
@@ -121,8 +131,8 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     }
     for (size_t i = 0; i < springs; i++) {
         const ck_Spring *spring = &model->springs[i];
-        native->compliance[i] = 1 / (spring->stiffness * native->dt * native->dt);
-        native->gamma[i] = spring->damping / (spring->stiffness * native->dt);
+        native->compliance[i] = compliance_of(spring, used) / (native->dt * native->dt);
+        native->gamma[i] = spring->damping * compliance_of(spring, used) / native->dt;
     }
     status = lay_in_rows(native, error);
     if (status)
@@ -154,6 +164,7 @@ const ck_Engine ck_native_xpbd = {
     .version = ck_native_version,
     .method = CK_METHOD_XPBD,
     .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
+    .shares_steps = true,
     .order = 1,
     .create = create,
     .step = step,

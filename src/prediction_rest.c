@@ -1,7 +1,7 @@
 #include "prediction_rest.h"
 
 #include "equilibrium.h"
-#include "kernel_projection.h"
+#include "sweep_order.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -62,15 +62,15 @@ static bool apply_sweep(ck_Model *sweeping, const ck_Model *model, ck_Method met
 }
 
 // The springs of a model in the order in which the method sweeps over them; NULL without memory.
-static ck_Spring *springs_in_order(const ck_Model *model, ck_Method method) {
+static ck_Spring *springs_in_order(const ck_Model *model, ck_Method method, const ck_Settings *used) {
     size_t count = (size_t)model->spring_count;
     ck_Spring *springs = malloc(sizeof *springs * count);
     int *order = malloc(sizeof *order * count);
     bool found = springs && order;
-    if (found && method == CK_METHOD_BULLET_PBD)
+    if (found && method == CK_METHOD_BULLET_PBD && !used->reordered)
         for (size_t i = 0; i < count; i++) order[i] = (int)i;
     else if (found)
-        found = !ck_projection_order(model, order);
+        found = !ck_sweep_order(model, order);
     for (size_t i = 0; i < count && found; i++) springs[i] = model->springs[order[i]];
     free(order);
     if (found) return springs;
@@ -83,14 +83,15 @@ static ck_Spring *springs_in_order(const ck_Model *model, ck_Method method) {
 bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settings *used, const double *truth,
                         double *position) {
     Softening softening;
-    if (used->iterations != 1 || !model->spring_count || !soften(&softening, method, &model->springs[0], 1, 1))
+    if (used->iterations != 1 || used->klst > 0 || used->compliance > 0 || !model->spring_count ||
+        !soften(&softening, method, &model->springs[0], 1, 1))
         return false;
     size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
     double dt = model->step / used->substeps, *moved = malloc(bytes), change = INFINITY;
     double eased = method == CK_METHOD_STOERMER_BARS ? 1 / (1 + 0.5 * model->drag * dt) : 1;
     ck_Model ordered = *model, sweeping = *model;
-    ordered.springs = springs_in_order(model, method);
-    sweeping.springs = springs_in_order(model, method);
+    ordered.springs = springs_in_order(model, method, used);
+    sweeping.springs = springs_in_order(model, method, used);
     bool found = moved && ordered.springs && sweeping.springs;
     if (found) memcpy(position, truth, bytes);
     for (int round = 0; round < ROUNDS && found && change > 1e-11 * model->size; round++) {

@@ -47,7 +47,8 @@ static void set_pair(Pair *pair, double rate) {
 }
 
 static ck_Status start_pair(Pair *pair, uint32_t sweeps, uint32_t mended, ck_Error *error) {
-    return ck_tecido_create(&pair->tecido, &pair->model, &(ck_Settings){1, sweeps, 0, mended, 0}, error);
+    return ck_tecido_create(&pair->tecido, &pair->model,
+                            &(ck_Settings){.substeps = 1, .iterations = sweeps, .mended = mended}, error);
 }
 
 static void step_pair(const Pair *pair, int count) {
@@ -150,7 +151,9 @@ static ck_Status run_scene(double *value, const char *scenes, const char *name, 
         velocity = calloc(3 * (size_t)model.particle_count, sizeof *velocity);
         if (!velocity) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
-    if (!status) status = ck_tecido_create(&tecido, &model, &(ck_Settings){1, sweeps, 0, mended, 0}, error);
+    if (!status)
+        status = ck_tecido_create(&tecido, &model,
+                                  &(ck_Settings){.substeps = 1, .iterations = sweeps, .mended = mended}, error);
     if (!status) {
         for (int i = 0; i < frames; i++) ck_tecido_step(tecido, model.step);
         ck_tecido_velocity(tecido, velocity);

@@ -37,6 +37,10 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"*.iterations", CK_RANGE_SETTING},
     {"*.relaxation", CK_RANGE_SETTING},
     {"*.mended", CK_RANGE_SETTING},
+    {"*.compliance", CK_RANGE_SETTING},
+    {"*.klst", CK_RANGE_UNIT},
+    {"*.reordered", CK_RANGE_UNIT},
+    {"*.threads", CK_RANGE_SETTING},
     {NULL, CK_RANGE_FINITE},
 };
 
@@ -139,7 +143,11 @@ static const cyaml_schema_field_t engine_fields[] = {
     CYAML_FIELD_UINT("substeps", OPTIONAL, ck_Settings, substeps),
     CYAML_FIELD_UINT("iterations", OPTIONAL, ck_Settings, iterations),
     CYAML_FIELD_FLOAT("relaxation", OPTIONAL, ck_Settings, relaxation),
+    CYAML_FIELD_FLOAT("compliance", OPTIONAL, ck_Settings, compliance),
+    CYAML_FIELD_FLOAT("klst", OPTIONAL, ck_Settings, klst),
     CYAML_FIELD_UINT("mended", OPTIONAL, ck_Settings, mended),
+    CYAML_FIELD_UINT("reordered", OPTIONAL, ck_Settings, reordered),
+    CYAML_FIELD_UINT("threads", OPTIONAL, ck_Settings, threads),
     CYAML_FIELD_END,
 };
 

@@ -52,10 +52,9 @@ static void write_command(char *out, size_t size, const ck_Comparison *compariso
     for (int i = 0; i < options->override_count; i++) {
         const ck_Override *override = &options->overrides[i];
         if (override->engine != run->engine) continue;
-        used = add_setting(out, size, used, engine, "substeps", override->settings.substeps);
-        used = add_setting(out, size, used, engine, "iterations", override->settings.iterations);
-        used = add_setting(out, size, used, engine, "relaxation", override->settings.relaxation);
-        used = add_setting(out, size, used, engine, "mended", override->settings.mended);
+        for (int key = 0; key < CK_SETTING_COUNT; key++)
+            used = add_setting(out, size, used, engine, ck_setting_keys[key].name,
+                               ck_setting_get(&override->settings, key));
     }
 }
 

@@ -38,7 +38,7 @@ static void fly_flag(uint32_t sweeps, double rate, Range *longest, Range *tip) {
     ck_Model model = comparison.model;
     model.step = 1 / rate;
     ck_Tecido *flag;
-    assert_int_equal(ck_tecido_create(&flag, &model, &(ck_Settings){1, sweeps, 0, 0, 0}, NULL), CK_OK);
+    assert_int_equal(ck_tecido_create(&flag, &model, &(ck_Settings){.substeps = 1, .iterations = sweeps}, NULL), CK_OK);
     const double *x = ck_tecido_position(flag);
     *longest = *tip = (Range){INFINITY, -INFINITY};
     for (int frame = 0; frame < 20 * rate; frame++) {
