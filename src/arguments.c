@@ -8,34 +8,63 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char ck_arguments_help[] =
-    "  --out DIR            write the CSVs into DIR\n"
-    "  --engine NAME        run this engine only; may be given several times\n"
-    "  --set ENGINE.KEY=N   substeps, iterations, relaxation, compliance, klst, mended, reordered or threads of an\n"
-    "                       engine, over the scene's own\n"
-    "  --threads N          that share a step of native-verlet, native-bars and native-xpbd on regular cloths\n"
-    "  --repeats N          timed repeats, 0 to 99 (usually 5)\n"
-    "  --budget S           CPU seconds per timed repeat at most (usually 2)\n"
-    "  --time-limit S       wall seconds that one run may take (usually 900)\n"
-    "  --memory-limit MIB   memory that one run may take (usually 4096)\n"
-    "  --seed N             of the order in which engines are timed (usually 1)\n"
-    "  --help               this text\n"
-    "\nA SCENE is a path, or a bare name that stands for scenes/NAME.yaml.\n";
-
-enum { OUT, ENGINE, SET, REPEATS, BUDGET, TIME_LIMIT, MEMORY_LIMIT, SEED, THREADS };
-
-static const struct option option_table[] = {
-    {"out", required_argument, NULL, OUT},
-    {"engine", required_argument, NULL, ENGINE},
-    {"set", required_argument, NULL, SET},
-    {"repeats", required_argument, NULL, REPEATS},
-    {"budget", required_argument, NULL, BUDGET},
-    {"time-limit", required_argument, NULL, TIME_LIMIT},
-    {"memory-limit", required_argument, NULL, MEMORY_LIMIT},
-    {"seed", required_argument, NULL, SEED},
-    {"threads", required_argument, NULL, THREADS},
-    {NULL, 0, NULL, 0},
+enum {
+    OUT,
+    ENGINE,
+    SET,
+    REPEATS,
+    BUDGET,
+    TIME_LIMIT,
+    MEMORY_LIMIT,
+    SEED,
+    THREADS,
+    JOBS,
+    SHARD,
+    ERROR,
+    LIKE,
+    VARY,
+    VALIDATE,
+    UPDATE
 };
+
+// Options, what they are, and the groups of commands that take them; 0: all.
+static const struct {
+    const char *name;
+    unsigned groups;
+    const char *help;
+} known_options[] = {
+    [OUT] = {"out", 0, "--out DIR            write the CSVs into DIR"},
+    [ENGINE] = {"engine", 0, "--engine NAME        run this engine only; may be given several times"},
+    [SET] = {"set", 0,
+             "--set ENGINE.KEY=N   substeps, iterations, relaxation, compliance, klst, mended, reordered or threads of "
+             "an\n                       engine, over the scene's own"},
+    [REPEATS] = {"repeats", CK_TAKES_TIMING, "--repeats N          timed repeats, 0 to 99 (usually 5)"},
+    [BUDGET] = {"budget", CK_TAKES_TIMING, "--budget S           CPU seconds per timed repeat at most (usually 2)"},
+    [TIME_LIMIT] = {"time-limit", 0, "--time-limit S       wall seconds that one run may take (usually 900)"},
+    [MEMORY_LIMIT] = {"memory-limit", 0, "--memory-limit MIB   memory that one run may take (usually 4096)"},
+    [SEED] = {"seed", CK_TAKES_TIMING, "--seed N             of the order in which engines are timed (usually 1)"},
+    [THREADS] =
+        {"threads", 0,
+         "--threads N          that share a step of native-verlet, native-bars and native-xpbd on regular cloths"},
+    [JOBS] = {"jobs", CK_TAKES_JOBS,
+              "--jobs N             worker processes (usually one a core; one where time counts)"},
+    [SHARD] = {"shard", CK_TAKES_JOBS,
+               "--shard I/N          only every N-th case, from the I-th; 'clothcheck merge' joins the parts"},
+    [ERROR] = {"error", CK_TAKES_GOAL | CK_TAKES_ERROR, "--error X            a tolerance, in units of size"},
+    [LIKE] = {"like", CK_TAKES_GOAL, "--like ENGINE        come close to that engine's path instead of the truth"},
+    [VARY] = {"vary", CK_TAKES_GOAL,
+              "--vary KEY           search compliance, klst or stiffness, too; may be given several times"},
+    [VALIDATE] = {"validate", CK_TAKES_GOAL,
+                  "--validate SCENE     try the result on that scene, too; may be given several times"},
+    [UPDATE] = {"update", CK_TAKES_UPDATE, "--update             write the baseline anew, and print what moved"},
+};
+#define OPTIONS ((int)(sizeof known_options / sizeof *known_options))
+
+void ck_arguments_help(unsigned groups) {
+    for (int i = 0; i < OPTIONS; i++)
+        if (!known_options[i].groups || (known_options[i].groups & groups)) printf("  %s\n", known_options[i].help);
+    printf("  --help               this text\n\nA SCENE is a path, or a bare name that stands for scenes/NAME.yaml.\n");
+}
 
 static ck_Status read_number(double *number, const char *text, double low, double high, const char *option,
                              ck_Error *error) {
@@ -106,6 +135,41 @@ static ck_Status set_threads(ck_Arguments *arguments, int engine, double threads
     return add_override(arguments, text, error);
 }
 
+static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    int used = 0;
+    if (sscanf(text, "%d/%d%n", &arguments->shard, &arguments->shards, &used) == 2 && !text[used] &&
+        arguments->shard >= 1 && arguments->shard <= arguments->shards && arguments->shards <= 10000)
+        return CK_OK;
+    return ck_fail(error, CK_BAD_INPUT, "--shard %s: it must read I/N with 1 <= I <= N, as in 2/4", text);
+}
+
+static ck_Status add_variable(ck_Arguments *arguments, const char *key, ck_Error *error) {
+    int variable = strcmp(key, "stiffness") ? (int)ck_setting_find(key) : CK_SETTING_COUNT;
+    if (variable != CK_SET_COMPLIANCE && variable != CK_SET_KLST && strcmp(key, "stiffness"))
+        return ck_fail(error, CK_BAD_INPUT, "--vary %s: the key must be compliance, klst or stiffness", key);
+    arguments->varies[variable] = true;
+    return CK_OK;
+}
+
+// The path of a scene: as it is, or scenes/NAME.yaml for a bare name. NULL without memory.
+static char *path_of(const char *scene) {
+    bool bare = !strchr(scene, '/') && !strchr(scene, '.');
+    size_t size = strlen(scene) + sizeof "scenes/.yaml";
+    char *path = malloc(size);
+    if (path) snprintf(path, size, bare ? "scenes/%s.yaml" : "%s", scene);
+    return path;
+}
+
+static ck_Status add_validation(ck_Arguments *arguments, const char *scene, ck_Error *error) {
+    const int most = sizeof arguments->validate / sizeof *arguments->validate;
+    if (arguments->validate_count == most)
+        return ck_fail(error, CK_BAD_INPUT, "--validate is given more than %d times", most);
+    char *path = path_of(scene);
+    if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    arguments->validate[arguments->validate_count++] = path;
+    return CK_OK;
+}
+
 static ck_Status read_option(ck_Arguments *arguments, int option, const char *value, ck_Error *error) {
     ck_CompareOptions *options = &arguments->options;
     double number;
@@ -128,6 +192,16 @@ static ck_Status read_option(ck_Arguments *arguments, int option, const char *va
         status = read_number(&number, value, 0, 1e15, "--seed", error);
         if (!status) options->seed = (uint64_t)number;
         break;
+    case JOBS:
+        status = read_number(&number, value, 1, 1024, "--jobs", error);
+        if (!status) arguments->jobs = (int)number;
+        break;
+    case SHARD: status = read_shard(arguments, value, error); break;
+    case ERROR: status = read_number(&arguments->error, value, 0, 1e6, "--error", error); break;
+    case LIKE: status = find_engine(&arguments->like, value, error); break;
+    case UPDATE: arguments->is_update = true; break;
+    case VARY: status = add_variable(arguments, value, error); break;
+    case VALIDATE: status = add_validation(arguments, value, error); break;
     case THREADS:
         status = read_number(&number, value, 1, ck_setting_keys[CK_SET_THREADS].largest, "--threads", error);
         for (int i = 0; i < ck_engine_count() && !status; i++) status = set_threads(arguments, i, number, error);
@@ -138,22 +212,20 @@ static ck_Status read_option(ck_Arguments *arguments, int option, const char *va
 }
 
 static ck_Status add_scene(ck_Arguments *arguments, const char *scene, ck_Error *error) {
-    bool bare = !strchr(scene, '/') && !strchr(scene, '.');
-    size_t size = strlen(scene) + sizeof "scenes/.yaml";
-    char *path = malloc(size);
+    char *path = path_of(scene);
     char **scenes = realloc(arguments->scenes, sizeof *scenes * (size_t)(arguments->scene_count + 1));
     if (scenes) arguments->scenes = scenes;
     if (!path || !scenes) {
         free(path);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
-    snprintf(path, size, bare ? "scenes/%s.yaml" : "%s", scene);
     arguments->scenes[arguments->scene_count++] = path;
     return CK_OK;
 }
 
-static ck_Status add_all_scenes(ck_Arguments *arguments, ck_Error *error) {
+ck_Status ck_arguments_all_scenes(ck_Arguments *arguments, ck_Error *error) {
     glob_t found;
+    if (arguments->scene_count) return CK_OK;
     if (glob("scenes/*.yaml", 0, NULL, &found))
         return ck_fail(error, CK_BAD_INPUT,
                        "no SCENE is given and there is none in scenes/; give the paths of scene files");
@@ -163,25 +235,31 @@ static ck_Status add_all_scenes(ck_Arguments *arguments, ck_Error *error) {
     return status;
 }
 
-ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, ck_Error *error) {
-    *arguments = (ck_Arguments){.options = ck_compare_options_default()};
+ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, unsigned groups, ck_Error *error) {
+    *arguments = (ck_Arguments){.options = ck_compare_options_default(), .error = NAN};
     arguments->options.overrides = arguments->overrides;
+    struct option table[OPTIONS + 1] = {0};
+    int count = 0;
+    for (int i = 0; i < OPTIONS; i++)
+        if (!known_options[i].groups || (known_options[i].groups & groups))
+            table[count++] =
+                (struct option){known_options[i].name, i == UPDATE ? no_argument : required_argument, NULL, i};
     ck_Status status = CK_OK;
     optind = 0; // start anew, whoever parsed before
     opterr = 0;
-    for (int option; !status && (option = getopt_long(argc, argv, ":", option_table, NULL)) != -1;) {
+    for (int option; !status && (option = getopt_long(argc, argv, ":", table, NULL)) != -1;) {
         if (option == '?' || option == ':')
             return ck_fail(error, CK_BAD_INPUT, "%s: %s; 'clothcheck %s --help' tells what there is", argv[optind - 1],
                            option == ':' ? "needs a value" : "no such option", argv[0]);
         status = read_option(arguments, option, optarg, error);
     }
     for (int i = optind; i < argc && !status; i++) status = add_scene(arguments, argv[i], error);
-    if (!status && !arguments->scene_count) status = add_all_scenes(arguments, error);
     return status;
 }
 
 void ck_arguments_free(ck_Arguments *arguments) {
     for (int i = 0; i < arguments->scene_count; i++) free(arguments->scenes[i]);
+    for (int i = 0; i < arguments->validate_count; i++) free(arguments->validate[i]);
     free(arguments->scenes);
     *arguments = (ck_Arguments){0};
 }

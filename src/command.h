@@ -18,6 +18,12 @@ int ck_command_run(int argc, char **argv);
 int ck_command_compare(int argc, char **argv);
 int ck_command_claims(int argc, char **argv);
 int ck_command_bench(int argc, char **argv);
+int ck_command_precision(int argc, char **argv);
+int ck_command_stability(int argc, char **argv);
+int ck_command_tune(int argc, char **argv);
+int ck_command_needs(int argc, char **argv);
+int ck_command_check(int argc, char **argv);
+int ck_command_merge(int argc, char **argv);
 
 // What run and compare have in common on their command lines.
 typedef struct ck_Arguments {
@@ -25,17 +31,36 @@ typedef struct ck_Arguments {
     const ck_Engine *engines[CK_SCENE_MAX_ENGINES];
     ck_Override overrides[64];
     const char *out; // directory; NULL: none
-    char **scenes;   // paths, owned with their texts
+    int jobs;        // worker processes of a study; 0: as many as suit it
+    int shard, shards;
+    double error;                      // a tolerance; NAN: none
+    const ck_Engine *like;             // NULL: none
+    bool varies[CK_SETTING_COUNT + 1]; // of --vary; the last is stiffness
+    char *validate[16];                // paths, owned
+    int validate_count;
+    bool is_update;
+    char **scenes; // paths, owned with their texts
     int scene_count;
 } ck_Arguments;
 
+// What a command takes beside --out, --engine, --set, the limits and --threads.
+typedef enum ck_ArgumentGroup {
+    CK_TAKES_TIMING = 1,
+    CK_TAKES_JOBS = 2,
+    CK_TAKES_GOAL = 4,
+    CK_TAKES_ERROR = 8,
+    CK_TAKES_UPDATE = 16
+} ck_ArgumentGroup;
+
 // Reads options and scene arguments; a scene is a path, or a bare name that stands for scenes/NAME.yaml.
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY. Free with ck_arguments_free in any case.
-ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, ck_Error *error);
+ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, unsigned groups, ck_Error *error);
+// All of scenes/ where none was given. Errors: CK_BAD_INPUT, CK_NO_MEMORY.
+ck_Status ck_arguments_all_scenes(ck_Arguments *arguments, ck_Error *error);
 void ck_arguments_free(ck_Arguments *arguments);
 
-// What the options are, for --help.
-extern const char ck_arguments_help[];
+// Prints what the options are, for --help.
+void ck_arguments_help(unsigned groups);
 
 // Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each while
 // its runs are in memory. Returns the exit status, having told of an error on stderr.
@@ -43,6 +68,9 @@ int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Compar
 
 // Prints one line per engine: status, error and cost. With a header when first is true.
 void ck_print_summary(const ck_Comparison *comparison);
+
+// Asks for signals to end what runs, so that whole files or none are left.
+void ck_command_catch_signals(void);
 
 // Tells of an error on stderr and returns the exit status that goes with it.
 int ck_command_fail(ck_Status status, const ck_Error *error);

@@ -27,8 +27,8 @@ static void print_help(void) {
     printf(
         "clothcheck compare [SCENE...] [options]\n\nRuns all engines on all scenes (without SCENE: scenes/*.yaml) and "
         "writes\n"
-        "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (usually out).\n\n%s",
-        ck_arguments_help);
+        "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (usually out).\n\n");
+    ck_arguments_help(CK_TAKES_TIMING);
 }
 
 int ck_command_compare(int argc, char **argv) {
@@ -39,7 +39,8 @@ int ck_command_compare(int argc, char **argv) {
         }
     ck_Error error = {0};
     ck_Arguments arguments;
-    ck_Status status = ck_arguments_read(&arguments, argc, argv, &error);
+    ck_Status status = ck_arguments_read(&arguments, argc, argv, CK_TAKES_TIMING, &error);
+    if (!status) status = ck_arguments_all_scenes(&arguments, &error);
     if (!arguments.out) arguments.out = "out";
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
     if (result == CK_EXIT_OK)

@@ -22,13 +22,14 @@ int ck_command_run(int argc, char **argv) {
     for (int i = 1; i < argc; i++)
         if (!strcmp(argv[i], "--help")) {
             printf("clothcheck run SCENE [options]\n\nRuns one scene and prints a summary and what each engine made of "
-                   "the scene.\n\n%s",
-                   ck_arguments_help);
+                   "the scene.\n\n");
+            ck_arguments_help(CK_TAKES_TIMING);
             return CK_EXIT_OK;
         }
     ck_Error error = {0};
     ck_Arguments arguments;
-    ck_Status status = ck_arguments_read(&arguments, argc, argv, &error);
+    ck_Status status = ck_arguments_read(&arguments, argc, argv, CK_TAKES_TIMING, &error);
+    if (!status) status = ck_arguments_all_scenes(&arguments, &error);
     if (!status && arguments.scene_count != 1)
         status =
             ck_fail(&error, CK_BAD_INPUT, "run takes one SCENE, not %d; compare takes several", arguments.scene_count);

@@ -19,6 +19,11 @@ static void interrupt(int signal_number) {
     ck_child_interrupted = 1;
 }
 
+void ck_command_catch_signals(void) {
+    signal(SIGINT, interrupt);
+    signal(SIGTERM, interrupt);
+}
+
 static void show_progress(const char *scene, const char *engine, const char *doing) {
     fprintf(stderr, "\r\033[K%s %s on %s", doing, engine, scene);
 }
@@ -37,9 +42,7 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
                          void (*show)(const ck_Comparison *), ck_Error *error) {
     ck_CompareOptions options = arguments->options;
     bool terminal = isatty(STDERR_FILENO);
-    // whole files or none: an interrupted comparison takes back what it began
-    signal(SIGINT, interrupt);
-    signal(SIGTERM, interrupt);
+    ck_command_catch_signals();
     if (terminal) options.progress = show_progress;
     char *cache = arguments->out ? ck_path_join(arguments->out, "truths") : NULL;
     options.cache = cache;

@@ -10,6 +10,12 @@ static const ck_Command commands[] = {
     {"list", "", "engines, scenes, metrics and truths", ck_command_list},
     {"run", "SCENE", "one scene, chosen engines: summary and ledger; CSVs with --out", ck_command_run},
     {"compare", "[SCENE...]", "all engines on all scenes: the six CSVs of a comparison", ck_command_compare},
+    {"check", "[SCENE...]", "regression: what was measured before, within bands; exit status 1", ck_command_check},
+    {"precision", "SCENE", "error against cost over time steps and iterations: precision.csv", ck_command_precision},
+    {"stability", "SCENE", "where methods fail: time step against stiffness: stability.csv", ck_command_stability},
+    {"tune", "SCENE", "the cheapest settings within an error, or the closest to a goal: tune.csv", ck_command_tune},
+    {"needs", "SCENE", "what the scene needs to be modelled, and what not: needs.csv", ck_command_needs},
+    {"merge", "OUT DIR...", "joins the parts of a study that was run with --shard", ck_command_merge},
     {"claims", "", "what was claimed of the two origins, and what their quirks cost", ck_command_claims},
     {"bench", "", "how fast the engines are: per spring, per step, and as a cloth grows", ck_command_bench},
 };
@@ -20,7 +26,7 @@ static void print_help(FILE *out) {
             "clothcheck %s: which cloth solver, at which settings, is right for my scene, and what does it cost?\n\n",
             CK_VERSION);
     for (size_t i = 0; i < COMMANDS; i++)
-        fprintf(out, "  clothcheck %-8s %-11s %s\n", commands[i].name, commands[i].arguments, commands[i].about);
+        fprintf(out, "  clothcheck %-9s %-11s %s\n", commands[i].name, commands[i].arguments, commands[i].about);
     fprintf(out, "\n'clothcheck COMMAND --help' tells a command's options. Exit status: 0 fine, 1 a check failed, 2 "
                  "wrong usage or input.\n");
 }

@@ -77,15 +77,15 @@ static void substep(ck_Native *native) {
     for (int i = 0; i < count; i++) velocity[i] += 0.5 * dt * acceleration[i];
 }
 
-// Time step: half of the stability bound 2/ω·(√(1 + ζ²) − ζ), so that a cloth that folds (up to √2 in ω) stays inside;
+// Time step: half of the stability bound, so that a cloth that folds (up to √2 in ω) stays inside;
 // and a quarter of the time in which drag takes a speed.
 static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     double frequency;
     ck_Status status = ck_stability_frequency(model, &frequency);
     if (status) return status;
-    double zeta = 0.5 * frequency * ck_stability_damping_time(model) + 0.5 * model->drag / fmax(frequency, 1e-300);
+    double damping = frequency * frequency * ck_stability_damping_time(model) + model->drag;
     double limit = ck_stability_drag_time(model, 0.25);
-    if (frequency > 0) limit = fmin(limit, 0.5 * 2 / frequency * (sqrt(1 + zeta * zeta) - zeta));
+    if (frequency > 0) limit = fmin(limit, 0.5 * ck_stability_verlet_limit(frequency, damping));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit),
                           .threads = wanted->threads};
     ck_native_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);

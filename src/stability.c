@@ -55,6 +55,11 @@ ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
     return CK_OK;
 }
 
+double ck_stability_verlet_limit(double frequency, double damping) {
+    double squared = frequency * frequency;
+    return 2 * (sqrt(damping * damping + squared) - damping) / squared;
+}
+
 double ck_stability_damping_time(const ck_Model *model) {
     double longest = 0;
     for (int i = 0; i < model->spring_count; i++)

@@ -13,6 +13,11 @@ extern "C" {
 // Cost: one pass over springs. Fails with CK_NO_MEMORY only.
 ck_Status ck_stability_frequency(const ck_Model *model, double *frequency);
 
+// The longest stable step of velocity Verlet with predicted velocity, in s: 2·(√(b² + ω²) − b)/ω². λ = −1 of one mode
+// gives (ω·dt)² + 4·b·dt = 4.
+//   damping  b, 1/s, of the mode: by springs (c/k)·ω², and drag
+double ck_stability_verlet_limit(double frequency, double damping);
+
 // The largest c/k of its springs, in s.
 double ck_stability_damping_time(const ck_Model *model);
 

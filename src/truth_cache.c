@@ -1,6 +1,7 @@
 #include "truth_cache.h"
 
 #include "equilibrium.h"
+#include "hash.h"
 #include "path.h"
 
 #include <stdio.h>
@@ -17,34 +18,26 @@ typedef struct Header {
     int32_t path_count, particle_count, horizon, frame_counts[CK_TRUTH_MAX_PATHS], unused;
 } Header;
 
-// Source: Fowler, Noll, Vo, FNV-1a 64 bit.
-static uint64_t hash(uint64_t start, const void *data, size_t bytes) {
-    const unsigned char *byte = data;
-    for (size_t i = 0; i < bytes; i++) start = (start ^ byte[i]) * 0x100000001b3u;
-    return start;
-}
-#define HASH_START 0xcbf29ce484222325u
-
 uint64_t ck_truth_cache_hash(const ck_Model *model) {
     size_t count = (size_t)model->particle_count;
-    uint64_t value = hash(HASH_START, model->truth, strlen(model->truth));
-    value = hash(value, model->position, 3 * count * sizeof(double));
-    value = hash(value, model->velocity, 3 * count * sizeof(double));
-    value = hash(value, model->mass, count * sizeof(double));
-    value = hash(value, model->pinned, count * sizeof(bool));
+    uint64_t value = ck_hash(CK_HASH_START, model->truth, strlen(model->truth));
+    value = ck_hash(value, model->position, 3 * count * sizeof(double));
+    value = ck_hash(value, model->velocity, 3 * count * sizeof(double));
+    value = ck_hash(value, model->mass, count * sizeof(double));
+    value = ck_hash(value, model->pinned, count * sizeof(bool));
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         const double numbers[5] = {spring->a, spring->b, spring->rest, spring->stiffness, spring->damping};
-        value = hash(value, numbers, sizeof numbers);
+        value = ck_hash(value, numbers, sizeof numbers);
     }
     for (int i = 0; i < model->release_count; i++) {
         const ck_Release *release = &model->releases[i];
-        value = hash(value, &release->frame, sizeof release->frame);
-        value = hash(value, release->particles, (size_t)release->particle_count * sizeof *release->particles);
+        value = ck_hash(value, &release->frame, sizeof release->frame);
+        value = ck_hash(value, release->particles, (size_t)release->particle_count * sizeof *release->particles);
     }
     const double numbers[] = {model->gravity[0], model->gravity[1], model->gravity[2], model->force[0], model->force[1],
                               model->force[2],   model->drag,       model->duration,   model->step};
-    return hash(value, numbers, sizeof numbers);
+    return ck_hash(value, numbers, sizeof numbers);
 }
 
 static size_t path_bytes(const ck_Model *model, int frames) {
@@ -63,7 +56,7 @@ static bool is_header_sound(const Header *header, const ck_Truth *truth, const c
 
 // Reads the paths and holds them against the header's hash, and an equilibrium against its own forces.
 static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *model, FILE *file) {
-    uint64_t value = HASH_START;
+    uint64_t value = CK_HASH_START;
     for (int i = 0; i < header->path_count; i++) {
         ck_Trajectory *path = &loaded->paths[i];
         ck_Model frames = *model;
@@ -72,7 +65,7 @@ static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *m
         loaded->path_count = i + 1;
         if (fread(path->data, 1, path->bytes, file) != path->bytes) return false;
         path->frame_count = header->frame_counts[i];
-        value = hash(value, path->data, path->bytes);
+        value = ck_hash(value, path->data, path->bytes);
         if (i || !loaded->form->is_static) continue;
         double residual = ck_equilibrium_residual(model, path->data);
         if (!(residual >= 0 && residual <= CK_EQUILIBRIUM_RESIDUAL)) return false;
@@ -113,13 +106,13 @@ ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, cons
     FILE *file = path && part && !ck_path_make(directory) ? fopen(part, "wb") : NULL;
     Header header = {.format = FORMAT,
                      .model = ck_truth_cache_hash(model),
-                     .data = HASH_START,
+                     .data = CK_HASH_START,
                      .path_count = truth->path_count,
                      .particle_count = model->particle_count,
                      .horizon = truth->reference.horizon};
     for (int i = 0; i < truth->path_count; i++) {
         header.frame_counts[i] = truth->paths[i].frame_count;
-        header.data = hash(header.data, truth->paths[i].data, path_bytes(model, truth->paths[i].frame_count));
+        header.data = ck_hash(header.data, truth->paths[i].data, path_bytes(model, truth->paths[i].frame_count));
     }
     bool written = file && fwrite(&header, sizeof header, 1, file) == 1;
     for (int i = 0; i < truth->path_count && written; i++) {

@@ -78,7 +78,7 @@ static void test_usage(void **state) {
         {"run rope_hanging --repeats many", 2, "must be a number from 0 to 99"},
         {"run rope_hanging --set ode-quick.substeps", 2, "must read ENGINE.KEY=NUMBER"},
         {"run rope_hanging --set ode-quick.substeps=1.5", 2, "substeps must be a whole number"},
-        {"run rope_hanging --set ode-quick.color=3", 2, "substeps must be a whole number"},
+        {"run rope_hanging --set ode-quick.color=3", 2, "the key must be one of substeps"},
         {"run nowhere", 2, "scenes/nowhere.yaml: No such file"},
         {"run oscillator --engine null --repeats 0", 0, "moves nothing"},
     };

@@ -1,0 +1,41 @@
+#include "needs.h"
+#include "study_command.h"
+
+#include <math.h>
+
+// The engine that is asked for, else the first that models all there is.
+static const ck_Engine *choose_engine(const ck_StudyCommand *command) {
+    const ck_CompareOptions *options = &command->arguments->options;
+    for (int i = 0; i < options->engine_count; i++)
+        if (!(command->comparison->model.terms & ~options->engines[i]->terms)) return options->engines[i];
+    return options->engines[0];
+}
+
+static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
+    const ck_Arguments *arguments = command->arguments;
+    ck_Needs needs;
+    ck_Csv csv = {0};
+    ck_JournalRow *rows = NULL;
+    ck_Status status =
+        ck_needs_create(&needs, command->comparison, choose_engine(command),
+                        isnan(arguments->error) ? 0.01 : arguments->error, &arguments->options.limits, error);
+    const ck_Study study = ck_needs_study(&needs);
+    if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
+    if (!status) status = ck_csv_open(&csv, arguments->out, "needs.csv", ck_needs_columns, error);
+    if (!status) ck_needs_write(&needs, rows, &csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) ck_study_command_done(command, &study, "needs.csv");
+    ck_csv_discard(&csv);
+    ck_study_command_free(rows);
+    ck_needs_free(&needs);
+    return status;
+}
+
+int ck_command_needs(int argc, char **argv) {
+    return ck_study_command(argc, argv,
+                            "clothcheck needs SCENE [options]\n\nLeaves out one modelled term at a time, and every "
+                            "second particle, and says which of them change any metric by\nmore than --error (usually "
+                            "0.01), and what each costs; writes needs.csv. The engine is the first that models all\n"
+                            "there is, or --engine.",
+                            CK_TAKES_JOBS | CK_TAKES_ERROR, 60, run);
+}

@@ -1,0 +1,28 @@
+#include "stability_map.h"
+#include "study_command.h"
+
+static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
+    ck_StabilityMap map;
+    ck_Csv csv = {0};
+    ck_JournalRow *rows = NULL;
+    ck_Status status = ck_stability_map_create(&map, command->comparison, &command->arguments->options, error);
+    const ck_Study study = ck_stability_map_study(&map);
+    if (!status) status = ck_study_command_run(command, &study, 0, &rows, error);
+    if (!status) status = ck_csv_open(&csv, command->arguments->out, "stability.csv", ck_stability_columns, error);
+    if (!status) ck_stability_map_write(&map, rows, &csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) ck_study_command_done(command, &study, "stability.csv");
+    ck_csv_discard(&csv);
+    ck_study_command_free(rows);
+    ck_stability_map_free(&map);
+    return status;
+}
+
+int ck_command_stability(int argc, char **argv) {
+    return ck_study_command(argc, argv,
+                            "clothcheck stability SCENE [options]\n\nPushes the scene's rest and steps it: a map over "
+                            "time steps, stiffnesses and iterations, and the critical step by\nbisection to 1 % beside "
+                            "what theory says; writes stability.csv. A run may take 10 s\n"
+                            "where --time-limit does not say otherwise.",
+                            CK_TAKES_JOBS, 10, run);
+}

@@ -1,0 +1,55 @@
+#include "study_command.h"
+#include "tune.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "path.h"
+
+static void show(int evaluation, double best) {
+    fprintf(stderr, "\r\033[Ktune: %d settings, least error so far %.3g", evaluation, best);
+}
+
+static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
+    const ck_Arguments *arguments = command->arguments;
+    if (arguments->options.engines != arguments->engines || arguments->options.engine_count != 1)
+        return ck_fail(error, CK_BAD_INPUT, "tune needs one --engine NAME");
+    ck_TuneOptions options = {.engine = arguments->engines[0],
+                              .tolerance = arguments->error,
+                              .like = arguments->like,
+                              .validate = arguments->validate,
+                              .validate_count = arguments->validate_count,
+                              .directory = arguments->out,
+                              .question = command->question,
+                              .limits = arguments->options.limits,
+                              .progress = isatty(STDERR_FILENO) ? show : NULL};
+    for (int i = 0; i < CK_TUNE_VARIABLES; i++) options.varies[i] = arguments->varies[i];
+    char *cache = ck_path_join(arguments->out, "truths");
+    options.cache = cache;
+    ck_Tuning tuning;
+    ck_Csv csv = {0};
+    ck_Status status = ck_csv_open(&csv, arguments->out, "tune.csv", ck_tune_columns, error);
+    if (!status) status = ck_tune_run(&tuning, command->comparison, &options, &csv, error);
+    if (options.progress) fprintf(stderr, "\r\033[K");
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) {
+        ck_tune_print(&tuning, &options, &command->comparison->model);
+        printf("CSV: %s/tune.csv\n", arguments->out);
+    }
+    ck_csv_discard(&csv);
+    free(cache);
+    return status;
+}
+
+int ck_command_tune(int argc, char **argv) {
+    return ck_study_command(
+        argc, argv,
+        "clothcheck tune SCENE --engine NAME [options]\n\nSearches substeps, iterations and relaxation for the "
+        "cheapest "
+        "settings within --error, or without it for those that\ncome closest to the truth, or to --like ENGINE; prints "
+        "them as lines of a scene file, and writes every evaluation to\ntune.csv. Work is sweeps over all springs, one "
+        "more for each substep. A run may take 60 s.",
+        CK_TAKES_GOAL, 60, run);
+}

@@ -1,0 +1,44 @@
+// The finished cases of a study, appended row by row, so that a study which is killed goes on where it was.
+//
+// A journal is a CSV without a header: first a row that says what the study was asked, then key, status, reason and
+// values of each case. A row is written at once and ends in a newline: what a kill cut off is dropped.
+#ifndef CK_JOURNAL_H
+#define CK_JOURNAL_H
+
+#include "status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define CK_JOURNAL_VALUES 40
+
+// What is kept of a case. What values mean is the study's business; NaN where there is none.
+typedef struct ck_JournalRow {
+    bool is_done;
+    int status; // of ck_RunStatus
+    char reason[256];
+    double values[CK_JOURNAL_VALUES];
+} ck_JournalRow;
+
+typedef struct ck_Journal {
+    int file;
+    char *path;
+} ck_Journal;
+
+// Opens or starts directory/name. One whose question is another one starts anew.
+//   question  what was asked: the same question has the same cases;  kept  called for each row that was there
+// Errors: CK_IO, CK_NO_MEMORY. End with ck_journal_close in any case.
+ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char *name, const char *question,
+                          void (*kept)(void *context, const char *key, const ck_JournalRow *row), void *context,
+                          ck_Error *error);
+
+// Appends a case; several processes may, at the same time. Errors: CK_IO, CK_NO_MEMORY.
+ck_Status ck_journal_add(const ck_Journal *journal, const char *key, const ck_JournalRow *row, ck_Error *error);
+
+// Reads the question of directory/name into text. Errors: CK_BAD_INPUT where there is none, CK_NO_MEMORY.
+ck_Status ck_journal_question(const char *directory, const char *name, char *text, size_t size, ck_Error *error);
+
+// Takes the file away with remove, else leaves it. Accepts a zeroed journal.
+void ck_journal_close(ck_Journal *journal, bool remove);
+
+#endif

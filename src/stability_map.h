@@ -1,0 +1,53 @@
+// Where methods fail: time step against stiffness around a scene's rest, and the critical step beside what theory says.
+#ifndef CK_STABILITY_MAP_H
+#define CK_STABILITY_MAP_H
+
+#include "comparison.h"
+#include "csv_file.h"
+#include "study.h"
+
+extern const char *const ck_stability_columns[];
+
+typedef struct ck_StabilityCase {
+    const ck_Engine *engine;
+    bool is_critical;    // bisects the critical step; else one cell of the map
+    bool is_undamped;    // without spring damping and drag
+    double stiffness;    // times the scene's
+    double share;        // of a cell: its step in units of the undamped explicit limit at that stiffness
+    uint32_t iterations; // of a cell; 0: the engine's own
+} ck_StabilityCase;
+
+// A scene's rest at one stiffness.
+typedef struct ck_StabilityRest {
+    double stiffness;
+    double *position;  // [3*n] m
+    double frequency;  // rad/s, the highest of small motion about it
+    double damping;    // 1/s, of that motion by the springs' damping
+    double transverse; // s, the least sqrt(m·l/T) of its taut springs; INFINITY without any
+    double strain;     // the largest
+} ck_StabilityRest;
+
+#define CK_STABILITY_RESTS 3
+
+typedef struct ck_StabilityMap {
+    const ck_Comparison *comparison; // with its truth, outlives this
+    ck_Limits limits;
+    ck_StabilityRest rests[CK_STABILITY_RESTS];
+    ck_StabilityCase *cases;
+    int case_count;
+} ck_StabilityMap;
+
+// Lists the cases and finds the rests. Errors: CK_BAD_INPUT where the scene has no truth at rest, colliders or rigid
+// bars; CK_REFUSED where no rest is found; CK_NO_MEMORY. Free with ck_stability_map_free in any case.
+ck_Status ck_stability_map_create(ck_StabilityMap *map, const ck_Comparison *comparison,
+                                  const ck_CompareOptions *options, ck_Error *error);
+void ck_stability_map_free(ck_StabilityMap *map);
+
+ck_Study ck_stability_map_study(const ck_StabilityMap *map);
+void ck_stability_map_write(const ck_StabilityMap *map, const ck_JournalRow *rows, ck_Csv *csv);
+
+// The longest stable step of a method about a rest, s; NaN: it has none, or none is known.
+//   damping  1/s, of its fastest motion by springs and drag
+double ck_stability_limit(ck_Method method, double frequency, double damping, double transverse);
+
+#endif

@@ -1,0 +1,371 @@
+#include "tune.h"
+
+#include "study.h"
+
+#include <math.h>
+#include <nlopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Evaluations of the global search, and of the local one that starts from its best.
+#define GLOBAL 80
+#define LOCAL 60
+#define MOST_POINTS (GLOBAL + LOCAL + 1)
+// A setting that fails, or misses the tolerance, counts as this much more work for each power of e.
+#define PENALTY 20
+#define FAILED 1e3
+
+const char *const ck_tune_columns[] = {
+    "scene",           "engine",     "role",         "substeps",         "iterations",
+    "relaxation",      "compliance", "klst",         "stiffness_factor", "status",
+    "reason",          "error",      "static_error", "dynamic_error",    "tolerance",
+    "meets_tolerance", "work_per_s", "cpu_s",        "bounds_hit",       NULL};
+
+// How far a variable may go, in powers of two or, for relaxation, as it is.
+typedef struct Range {
+    int variable;
+    double low, high;
+} Range;
+
+typedef struct Search {
+    const ck_Comparison *comparison;
+    const ck_TuneOptions *options;
+    ck_Csv *csv;
+    ck_Journal journal;
+    ck_Settings automatic;
+    Range ranges[CK_TUNE_VARIABLES];
+    int range_count;
+    ck_Run like; // its path, where options->like is set
+    ck_TunePoint points[MOST_POINTS];
+    double values[MOST_POINTS]; // of the objective
+    int point_count, best;
+    char keys[MOST_POINTS][256];
+    ck_JournalRow kept[MOST_POINTS]; // of the journal
+    char kept_keys[MOST_POINTS][256];
+    int kept_count;
+    ck_Status status;
+    ck_Error *error;
+} Search;
+
+enum { ERROR, SAG_ERROR, STRETCH_ERROR, CPU, TIME_STEP };
+
+static ck_TunePoint point_at(const Search *search, const double *x) {
+    ck_TunePoint point = {.settings = search->automatic, .stiffness = 1};
+    point.settings.compliance = 0;
+    point.settings.klst = 0;
+    for (int i = 0; i < search->range_count; i++) {
+        const Range *range = &search->ranges[i];
+        double value = range->low + x[i] * (range->high - range->low);
+        if (range->variable != CK_SET_RELAXATION) value = exp2(value);
+        if (range->variable == CK_TUNE_STIFFNESS)
+            point.stiffness = value;
+        else
+            ck_setting_set(&point.settings, (ck_Setting)range->variable,
+                           ck_setting_keys[range->variable].is_whole ? fmax(1, round(value)) : value);
+    }
+    double sweeps = 1 + fmax(1, point.settings.iterations);
+    point.work = point.settings.substeps * sweeps / search->comparison->model.step;
+    return point;
+}
+
+// Springs of another stiffness in a copy of the model; they are the caller's to free.
+static ck_Status stiffen(ck_Model *model, double stiffness, ck_Error *error) {
+    ck_Spring *springs = malloc(sizeof *springs * (size_t)model->spring_count + 1);
+    if (!springs) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < model->spring_count; i++) {
+        springs[i] = model->springs[i];
+        springs[i].stiffness *= stiffness;
+    }
+    model->springs = springs;
+    return CK_OK;
+}
+
+// The errors are measured on the scene as it is, whatever stiffness the engine was given.
+static ck_Status try_on(ck_TunePoint *point, const ck_Comparison *comparison, const ck_Run *like,
+                        const ck_TuneOptions *options, ck_Error *error) {
+    ck_Model model = comparison->model;
+    ck_Status status = stiffen(&model, point->stiffness, error);
+    if (status) return status;
+    const ck_Trajectory *against = like ? &like->trajectory : NULL;
+    status = ck_trial_run(&point->trial, &model, &comparison->truth, against, options->engine, &point->settings, 0,
+                          &options->limits, error);
+    free(model.springs);
+    return status;
+}
+
+// At rest and on the way, apart: a truth at rest knows nothing of the way.
+static void split_errors(ck_TunePoint *point, const ck_Truth *truth, bool is_like) {
+    bool is_path = is_like || !truth->reference.is_static;
+    point->static_error = is_path ? point->trial.sag_error : point->trial.error;
+    point->dynamic_error = is_path ? point->trial.error : NAN;
+}
+
+static void take_kept(void *context, const char *key, const ck_JournalRow *row) {
+    Search *search = context;
+    if (search->kept_count == MOST_POINTS) return;
+    snprintf(search->kept_keys[search->kept_count], sizeof search->kept_keys[0], "%s", key);
+    search->kept[search->kept_count++] = *row;
+}
+
+static void write_key(char *key, size_t size, const ck_TunePoint *point) {
+    size_t used = (size_t)snprintf(key, size, "stiffness %.17g", point->stiffness);
+    for (int i = 0; i < CK_SETTING_COUNT && used < size; i++)
+        used += (size_t)snprintf(key + used, size - used, " %s %.17g", ck_setting_keys[i].name,
+                                 ck_setting_get(&point->settings, i));
+}
+
+// From the journal where it is there, else by running it.
+static ck_Status evaluate(Search *search, ck_TunePoint *point, const char *key) {
+    for (int i = 0; i < search->kept_count; i++) {
+        if (strcmp(search->kept_keys[i], key)) continue;
+        const ck_JournalRow *row = &search->kept[i];
+        const double *values = row->values;
+        point->trial = (ck_Trial){.status = row->status,
+                                  .error = values[ERROR],
+                                  .sag_error = values[SAG_ERROR],
+                                  .stretch_error = values[STRETCH_ERROR],
+                                  .cpu = values[CPU],
+                                  .time_step = values[TIME_STEP]};
+        snprintf(point->trial.reason, sizeof point->trial.reason, "%s", row->reason);
+        return CK_OK;
+    }
+    const ck_Run *like = search->options->like ? &search->like : NULL;
+    ck_Status status = try_on(point, search->comparison, like, search->options, search->error);
+    if (status) return status;
+    const ck_Trial *trial = &point->trial;
+    ck_JournalRow row = {.status = (int)trial->status};
+    for (int i = 0; i < CK_JOURNAL_VALUES; i++) row.values[i] = NAN;
+    const double values[] = {trial->error, trial->sag_error, trial->stretch_error, trial->cpu, trial->time_step};
+    memcpy(row.values, values, sizeof values);
+    snprintf(row.reason, sizeof row.reason, "%s", trial->reason);
+    return ck_journal_add(&search->journal, key, &row, search->error);
+}
+
+// The logarithm of the work, or of the error: what is searched for.
+static double value_of(const Search *search, const ck_TunePoint *point) {
+    double error = point->trial.error, tolerance = search->options->tolerance;
+    if (point->trial.status != CK_RUN_OK || !(error >= 0)) return FAILED;
+    if (isnan(tolerance)) return log(fmax(error, 1e-16));
+    return log(point->work) + PENALTY * fmax(0, log(error / tolerance));
+}
+
+static void add_row(ck_Csv *csv, const ck_Model *model, const ck_TuneOptions *options, const char *role,
+                    const ck_TunePoint *point, const char *bounds) {
+    const ck_Setting settings[] = {CK_SET_SUBSTEPS, CK_SET_ITERATIONS, CK_SET_RELAXATION, CK_SET_COMPLIANCE,
+                                   CK_SET_KLST};
+    ck_csv_text(csv, model->name);
+    ck_csv_text(csv, options->engine->name);
+    ck_csv_text(csv, role);
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
+        ck_csv_number(csv, ck_setting_get(&point->settings, settings[i]));
+    ck_csv_number(csv, point->stiffness);
+    ck_csv_text(csv, ck_run_status_names[point->trial.status]);
+    ck_csv_text(csv, point->trial.reason);
+    ck_csv_number(csv, point->trial.error);
+    ck_csv_number(csv, point->static_error);
+    ck_csv_number(csv, point->dynamic_error);
+    ck_csv_number(csv, options->tolerance);
+    bool is_met = point->trial.status == CK_RUN_OK && point->trial.error <= options->tolerance;
+    ck_csv_text(csv, isnan(options->tolerance) ? "" : is_met ? "yes" : "no");
+    ck_csv_number(csv, point->work);
+    ck_csv_number(csv, point->trial.cpu);
+    ck_csv_text(csv, bounds);
+}
+
+// NLopt's objective. Settings that round to ones already tried are not run again.
+static double objective(unsigned count, const double *x, double *gradient, void *context) {
+    (void)count;
+    (void)gradient; // none of the methods asks for it
+    Search *search = context;
+    if (search->status || search->point_count == MOST_POINTS) return FAILED;
+    ck_TunePoint point = point_at(search, x);
+    char key[256];
+    write_key(key, sizeof key, &point);
+    for (int i = 0; i < search->point_count; i++)
+        if (!strcmp(search->keys[i], key)) return search->values[i];
+    search->status = evaluate(search, &point, key);
+    if (search->status) return FAILED;
+    split_errors(&point, &search->comparison->truth, search->options->like != NULL);
+    int index = search->point_count++;
+    memcpy(search->keys[index], key, sizeof key);
+    search->points[index] = point;
+    search->values[index] = value_of(search, &point);
+    if (search->values[index] < search->values[search->best]) search->best = index;
+    add_row(search->csv, &search->comparison->model, search->options, "evaluation", &point, "");
+    if (search->options->progress)
+        search->options->progress(search->point_count, search->points[search->best].trial.error);
+    return search->values[index];
+}
+
+static void add_range(Search *search, int variable, double low, double high) {
+    search->ranges[search->range_count++] = (Range){variable, low, high};
+}
+
+// A factor of 32 either way in what is counted; what is given in numbers, around what theory would set.
+static void find_ranges(Search *search) {
+    const ck_Settings *automatic = &search->automatic;
+    const bool *varies = search->options->varies;
+    const ck_Model *model = &search->comparison->model;
+    double substeps = log2(automatic->substeps), stiffness = model->spring_count ? model->springs[0].stiffness : 1;
+    add_range(search, CK_SET_SUBSTEPS, fmax(0, substeps - 5), substeps + 5);
+    if (automatic->iterations) add_range(search, CK_SET_ITERATIONS, 0, fmax(7, log2(automatic->iterations) + 2));
+    if (automatic->relaxation > 0) add_range(search, CK_SET_RELAXATION, 0.8, 1.9);
+    if (varies[CK_SET_COMPLIANCE]) add_range(search, CK_SET_COMPLIANCE, -log2(stiffness) - 4, -log2(stiffness) + 4);
+    if (varies[CK_SET_KLST]) add_range(search, CK_SET_KLST, -10, 0);
+    if (varies[CK_TUNE_STIFFNESS]) add_range(search, CK_TUNE_STIFFNESS, -3, 3);
+}
+
+static ck_Status search_with(Search *search, nlopt_algorithm algorithm, int evaluations, double *x) {
+    nlopt_opt opt = nlopt_create(algorithm, (unsigned)search->range_count);
+    double value;
+    if (!opt) return ck_fail(search->error, CK_NO_MEMORY, "out of memory");
+    nlopt_set_min_objective(opt, objective, search);
+    nlopt_set_lower_bounds1(opt, 0);
+    nlopt_set_upper_bounds1(opt, 1);
+    nlopt_set_initial_step1(opt, 0.1);
+    nlopt_set_maxeval(opt, evaluations);
+    nlopt_set_xtol_abs1(opt, 1e-3);
+    nlopt_optimize(opt, x, &value);
+    nlopt_destroy(opt);
+    return search->status;
+}
+
+// Where the settings of a point stand between their bounds, 0 to 1.
+static void place(const Search *search, const ck_TunePoint *point, double *x) {
+    for (int i = 0; i < search->range_count; i++) {
+        const Range *range = &search->ranges[i];
+        double value = range->variable == CK_TUNE_STIFFNESS
+                           ? point->stiffness
+                           : ck_setting_get(&point->settings, (ck_Setting)range->variable);
+        if (range->variable != CK_SET_RELAXATION) value = log2(value);
+        x[i] = fmin(1, fmax(0, (value - range->low) / (range->high - range->low)));
+    }
+}
+
+static void name_bounds(const Search *search, ck_Tuning *tuning) {
+    double x[CK_TUNE_VARIABLES];
+    size_t used = 0;
+    place(search, &tuning->best, x);
+    for (int i = 0; i < search->range_count; i++) {
+        if (x[i] > 0.001 && x[i] < 0.999) continue;
+        int variable = search->ranges[i].variable;
+        used += (size_t)snprintf(tuning->bounds + used, sizeof tuning->bounds - used, "%s%s at its %s bound",
+                                 used ? "; " : "",
+                                 variable == CK_TUNE_STIFFNESS ? "stiffness" : ck_setting_keys[variable].name,
+                                 x[i] < 0.5 ? "lower" : "upper");
+    }
+}
+
+// The same time step on another scene, and its error there.
+static ck_Status validate(const Search *search, const ck_Tuning *tuning, const char *path, ck_Error *error) {
+    ck_Comparison other = {0};
+    ck_Run like = {0};
+    const ck_TuneOptions *options = search->options;
+    ck_Status status = ck_comparison_load(&other, path, error);
+    if (!status) status = ck_truth_create(&other.truth, &other.model, options->cache, error);
+    if (!status && options->like)
+        status = ck_run_measure(&like, &other.model, options->like, &(ck_Settings){0}, &options->limits, error);
+    if (!status) {
+        ck_TunePoint point = tuning->best;
+        point.settings.substeps = (uint32_t)fmax(1, round(other.model.step / tuning->best.trial.time_step));
+        point.work *= point.settings.substeps / other.model.step /
+                      (tuning->best.settings.substeps / search->comparison->model.step);
+        status = try_on(&point, &other, options->like ? &like : NULL, options, error);
+        split_errors(&point, &other.truth, options->like != NULL);
+        if (!status) add_row(search->csv, &other.model, options, "validation", &point, "");
+        if (!status)
+            printf("on %s: error %.3g%s (%s)\n", other.model.name, point.trial.error,
+                   isnan(options->tolerance)                 ? ""
+                   : point.trial.error <= options->tolerance ? ", within the tolerance"
+                                                             : ", not within the tolerance",
+                   ck_run_status_names[point.trial.status]);
+    }
+    ck_run_free(&like);
+    ck_comparison_free(&other);
+    return status;
+}
+
+static ck_Status prepare(Search *search, ck_Error *error) {
+    const ck_TuneOptions *options = search->options;
+    const ck_Model *model = &search->comparison->model;
+    const ck_Reference *reference = &search->comparison->truth.reference;
+    ck_Settings wanted = ck_engine_settings(options->engine, model);
+    void *state;
+    if (!options->like && (!reference->trajectory.frame_count || reference->is_invariant))
+        return ck_fail(error, CK_BAD_INPUT, "%s: its truth has no positions to come close to; give --like ENGINE",
+                       search->comparison->path);
+    if (model->terms & ~options->engine->terms)
+        return ck_fail(error, CK_REFUSED, "%s does not model all that %s has", options->engine->name, model->name);
+    ck_Status status = options->engine->create(&state, model, &wanted, &search->automatic, NULL, error);
+    if (status) return status;
+    options->engine->destroy(state);
+    find_ranges(search);
+    if (!options->like) return CK_OK;
+    status = ck_run_measure(&search->like, model, options->like, &(ck_Settings){0}, &options->limits, error);
+    if (!status && search->like.trajectory.frame_count != model->frame_count + 1)
+        status =
+            ck_fail(error, CK_REFUSED, "%s has no path to come close to: %s", options->like->name, search->like.reason);
+    return status;
+}
+
+static ck_Status conclude(Search *search, ck_Tuning *tuning, ck_Error *error) {
+    const ck_TuneOptions *options = search->options;
+    if (!search->point_count || search->values[search->best] >= FAILED)
+        return ck_fail(error, CK_REFUSED, "%s: none of %d settings of %s ran to its end", search->comparison->path,
+                       search->point_count, options->engine->name);
+    tuning->best = search->points[search->best];
+    tuning->evaluations = search->point_count;
+    tuning->meets = isnan(options->tolerance) || tuning->best.trial.error <= options->tolerance;
+    name_bounds(search, tuning);
+    add_row(search->csv, &search->comparison->model, options, "best", &tuning->best, tuning->bounds);
+    ck_Status status = CK_OK;
+    for (int i = 0; i < options->validate_count && !status; i++)
+        status = validate(search, tuning, options->validate[i], error);
+    return status;
+}
+
+ck_Status ck_tune_run(ck_Tuning *tuning, const ck_Comparison *comparison, const ck_TuneOptions *options, ck_Csv *csv,
+                      ck_Error *error) {
+    *tuning = (ck_Tuning){0};
+    Search *search = calloc(1, sizeof *search);
+    double x[CK_TUNE_VARIABLES];
+    if (!search) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *search =
+        (Search){.comparison = comparison, .options = options, .csv = csv, .journal = {.file = -1}, .error = error};
+    ck_Status status = prepare(search, error);
+    if (!status)
+        status = ck_journal_open(&search->journal, options->directory, "tune.journal", options->question, take_kept,
+                                 search, error);
+    if (!status) {
+        // first what the engine's own rule sets, then everywhere, then around the best
+        place(search, &(ck_TunePoint){.settings = search->automatic, .stiffness = 1}, x);
+        objective((unsigned)search->range_count, x, NULL, search);
+        status = search_with(search, NLOPT_GN_DIRECT_L, GLOBAL, x);
+    }
+    if (!status && search->point_count) place(search, &search->points[search->best], x);
+    if (!status) status = search_with(search, NLOPT_LN_SBPLX, LOCAL, x);
+    if (!status) status = conclude(search, tuning, error);
+    ck_journal_close(&search->journal, !status);
+    ck_run_free(&search->like);
+    free(search);
+    return status;
+}
+
+void ck_tune_print(const ck_Tuning *tuning, const ck_TuneOptions *options, const ck_Model *model) {
+    const ck_TunePoint *best = &tuning->best;
+    printf("# %s on %s: error %.3g, %.4g sweeps per simulated second, %d settings tried\n", options->engine->name,
+           model->name, best->trial.error, best->work, tuning->evaluations);
+    if (!tuning->meets) printf("# the tolerance of %g is not met\n", options->tolerance);
+    if (*tuning->bounds) printf("# %s\n", tuning->bounds);
+    if (best->stiffness != 1) printf("# with stiffness, shear and bend of springs times %.6g\n", best->stiffness);
+    printf("settings:\n  %s: {", options->engine->name);
+    const char *separator = "";
+    for (int i = 0; i < CK_SETTING_COUNT; i++) {
+        double value = ck_setting_get(&best->settings, i);
+        if (!(value > 0)) continue;
+        printf("%s%s: %.9g", separator, ck_setting_keys[i].name, value);
+        separator = ", ";
+    }
+    printf("}\n");
+}
