@@ -13,7 +13,7 @@
 // Points of a fit of order: the finest ones between these errors, and this many times the truth's uncertainty.
 #define COARSEST_FIT 0.02
 #define ABOVE_UNCERTAINTY 5
-#define MOST_FIT_POINTS 5
+#define MOST_FIT_POINTS 3
 
 enum { DT, SUBSTEPS, ITERATIONS, ERROR, SAG_ERROR, STRETCH_ERROR, CPU, CPU_RANGE };
 

@@ -1,0 +1,92 @@
+// The regression check: a fault of 1 % in an engine's stiffness is found and the engine named; a whole one passes.
+#include "fixture.h"
+
+#include "check.h"
+
+#include <unistd.h>
+
+// A baseline of one engine's rows, with bands, as --update writes it.
+static void make_baseline(ck_Baseline *baseline, const ck_CheckCase *one, const ck_JournalRow *row) {
+    char directory[] = "/tmp/clothcheck-check-XXXXXX", path[100];
+    ck_Csv csv;
+    assert_non_null(mkdtemp(directory));
+    assert_int_equal(ck_csv_open(&csv, directory, "metrics.csv", ck_baseline_columns, NULL), CK_OK);
+    assert_true(ck_check_add(one, row, 1e9, &csv));
+    assert_int_equal(ck_csv_close(&csv, NULL), CK_OK);
+    snprintf(path, sizeof path, "%s/metrics.csv", directory);
+    assert_int_equal(ck_baseline_read(baseline, path, NULL), CK_OK);
+    unlink(path);
+    rmdir(directory);
+}
+
+static void measure(ck_JournalRow *row, const ck_CheckCase *one, bool is_update) {
+    ck_Check check = {
+        .cases = (ck_CheckCase *)one, .case_count = 1, .limits = ck_limits_default(), .is_update = is_update};
+    ck_Study study = ck_check_study(&check);
+    *row = (ck_JournalRow){.is_done = true};
+    for (int i = 0; i < CK_JOURNAL_VALUES; i++) row->values[i] = NAN;
+    assert_int_equal(study.run(study.context, 0, row, NULL), CK_OK);
+}
+
+static void check_engine(ck_Comparison *comparison, const ck_Engine *engine) {
+    const ck_CheckCase one = {comparison, engine};
+    ck_JournalRow row;
+    ck_Baseline baseline;
+    ck_Deviation deviations[100];
+    measure(&row, &one, true);
+    make_baseline(&baseline, &one, &row);
+    assert_true(baseline.count > 5 && baseline.count < 100);
+    measure(&row, &one, false);
+    if (ck_check_compare(&one, &row, &baseline, deviations))
+        fail_msg("%s: %s deviates from itself", engine->name, deviations[0].row->metric);
+    for (int i = 0; i < comparison->model.spring_count; i++) comparison->model.springs[i].stiffness *= 1.01;
+    measure(&row, &one, false);
+    for (int i = 0; i < comparison->model.spring_count; i++) comparison->model.springs[i].stiffness /= 1.01;
+    int found = ck_check_compare(&one, &row, &baseline, deviations);
+    if (!found) fail_msg("%s: 1 %% of stiffness is not found", engine->name);
+    assert_string_equal(deviations[0].row->engine, engine->name);
+    assert_true(deviations[0].excess > 100);
+    ck_baseline_free(&baseline);
+}
+
+static void test_fault(void **state) {
+    (void)state;
+    ck_Comparison comparison;
+    assert_int_equal(ck_comparison_load(&comparison, SCENE_DIRECTORY "/rope_hanging.yaml", NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+    for (int i = 0; i < ck_engine_count(); i++)
+        if (fixture_is_solver(ck_engine_at(i)) && ck_engine_at(i)->order > 0 &&
+            fixture_supports(ck_engine_at(i), &comparison.model))
+            check_engine(&comparison, ck_engine_at(i));
+    ck_comparison_free(&comparison);
+}
+
+static void test_bad_baseline(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *wanted;
+    } cases[] = {
+        {"", "holds no rows"},
+        {"scene,engine,status,metric,value,band\n", "holds no rows"},
+        {"scene,engine,status,metric,value\n", ":1: 5 fields"},
+        {"scene,engine,state,metric,value,band\n", ":1: column 3 is state"},
+        {"scene,engine,status,metric,value,band\na,b,ok,sag,1\n", ":2: 5 fields"},
+        {"scene,engine,status,metric,value,band\na,b,ok,sag,high,1\n", ":2: value and band must be numbers"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char *path = fixture_file(cases[i].text);
+        ck_Baseline baseline;
+        ck_Error error = {0};
+        ck_Status status = ck_baseline_read(&baseline, path, &error);
+        if (status != CK_BAD_INPUT || !strstr(error.message, cases[i].wanted))
+            fail_msg("case %zu: status %d, %s", i, status, error.message);
+        ck_baseline_free(&baseline);
+        unlink(path);
+        free(path);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fault), cmocka_unit_test(test_bad_baseline)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

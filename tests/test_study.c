@@ -1,0 +1,232 @@
+// Studies through the program: killed and resumed, in parts and merged; and what they find where it is known.
+#include "fixture.h"
+
+#include "random.h"
+#include "stability.h"
+#include "stability_map.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char directory[] = "/tmp/clothcheck-study-XXXXXX";
+
+// Starts the program; its output goes to directory/output. %s in arguments is the directory.
+static pid_t start(const char *arguments) {
+    char command[1000], filled[800];
+    snprintf(filled, sizeof filled, arguments, directory, directory, directory, directory, directory);
+    snprintf(command, sizeof command, "exec " PROGRAM " %s >%s/output 2>&1", filled, directory);
+    pid_t child = fork();
+    if (child == 0) {
+        if (chdir(SCENE_DIRECTORY "/..")) _exit(9);
+        execl("/bin/sh", "sh", "-c", command, NULL);
+        _exit(9);
+    }
+    assert_true(child > 0);
+    return child;
+}
+
+static char *read_text(const char *name) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    FILE *file = fopen(path, "r");
+    if (!file) fail_msg("%s is not there", path);
+    char *text = calloc(1, 1 << 22);
+    size_t length = fread(text, 1, (1 << 22) - 1, file);
+    text[length] = 0;
+    fclose(file);
+    return text;
+}
+
+static void finish(const char *arguments, int wanted) {
+    int how;
+    waitpid(start(arguments), &how, 0);
+    if (!WIFEXITED(how) || WEXITSTATUS(how) != wanted) fail_msg("%s: %s", arguments, read_text("output"));
+}
+
+static void assert_same(const char *one, const char *other) {
+    char *a = read_text(one), *b = read_text(other);
+    if (strcmp(a, b)) fail_msg("%s and %s differ", one, other);
+    assert_true(strlen(a) > 1000);
+    free(a);
+    free(b);
+}
+
+static long size_of(const char *name) {
+    char path[200];
+    struct stat about;
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    return stat(path, &about) ? -1 : (long)about.st_size;
+}
+
+#define STUDY "stability rope_hanging --engine native-verlet --engine native-xpbd --engine bullet-pbd --jobs 2 --out "
+
+// Killed twenty times at a random moment, nothing is lost or repeated: the journal only grows, the CSV is the same.
+static void test_kill(void **state) {
+    (void)state;
+    ck_Random random = ck_random_seed(11);
+    long size = 0;
+    finish(STUDY "%s/whole", 0);
+    for (int i = 0; i < 20; i++) {
+        pid_t child = start(STUDY "%s/killed");
+        usleep((useconds_t)(60000 * ck_random_unit(&random)));
+        kill(child, SIGKILL);
+        waitpid(child, NULL, 0);
+        long now = size_of("killed/stability.journal");
+        // a study that got to its end has taken its journal away
+        if (now < 0) break;
+        assert_true(now >= size - 400); // what a kill cut off is dropped: at most one row
+        size = now;
+    }
+    finish(STUDY "%s/killed", 0);
+    assert_same("whole/stability.csv", "killed/stability.csv");
+    assert_int_equal(size_of("killed/stability.journal"), -1);
+}
+
+static void test_shards(void **state) {
+    (void)state;
+    finish(STUDY "%s/1 --shard 1/4", 0);
+    finish(STUDY "%s/2 --shard 2/4", 0);
+    finish(STUDY "%s/3 --shard 3/4", 0);
+    finish(STUDY "%s/4 --shard 4/4", 0);
+    finish("merge %s/all %s/1 %s/2 %s/3 %s/4", 0);
+    assert_same("whole/stability.csv", "all/stability.csv");
+    finish("stability rope_catenary --engine native-verlet --shard 1/2 --out %s/other", 0);
+    finish("merge %s/none %s/1 %s/other", 2);
+    finish("merge %s/none %s/empty", 2);
+    finish("stability rope_hanging --shard 5/4", 2);
+}
+
+// The growth of one damped mode over many steps of velocity Verlet with predicted velocity, or of symplectic Euler with
+// implicit damping; in units of its start.
+static double grow(ck_Method method, double frequency, double damping, double dt) {
+    double x = 1, v = 0, a = -frequency * frequency;
+    for (int i = 0; i < 40000 && fabs(x) < 1e6; i++) {
+        if (method == CK_METHOD_VELOCITY_VERLET) {
+            double predicted = v + dt * a, before = a;
+            x += dt * v + 0.5 * dt * dt * a;
+            a = -frequency * frequency * x - damping * predicted;
+            v += 0.5 * dt * (before + a);
+        } else {
+            v = (v - dt * frequency * frequency * x) / (1 + damping * dt);
+            x += dt * v;
+        }
+    }
+    return fabs(x);
+}
+
+// The limits of theory are where the method's own recurrence turns from bounded to growing.
+static void test_limits(void **state) {
+    (void)state;
+    static const ck_Method methods[] = {CK_METHOD_VELOCITY_VERLET, CK_METHOD_SYMPLECTIC_EULER};
+    for (int i = 0; i < 2; i++)
+        for (double damping = 0; damping < 300; damping = 3 * damping + 1) {
+            double limit = ck_stability_limit(methods[i], 50, damping, INFINITY);
+            assert_true(grow(methods[i], 50, damping, 0.999 * limit) < 100);
+            assert_true(grow(methods[i], 50, damping, 1.001 * limit) > 1e5);
+        }
+}
+
+// Fields of one CSV row whose first fields are these; fails where there is none.
+static void find_row(char *row, size_t size, const char *name, const char *start) {
+    char *text = read_text(name), *at = strstr(text, start);
+    if (!at) fail_msg("%s has no row %s", name, start);
+    snprintf(row, size, "%.*s", at ? (int)strcspn(at, "\n") : 0, at ? at : "");
+    free(text);
+}
+
+static double field_of(const char *row, int index) {
+    for (; index > 0; index--) row = strchr(row, ',') + 1;
+    return atof(row);
+}
+
+// Critical steps at those of theory: 2 % undamped, 5 % damped; ODE's transverse one 20 %.
+static void test_critical(void **state) {
+    (void)state;
+    static const struct {
+        const char *start;
+        double tolerance;
+    } rows[] = {{"rope_hanging,native-verlet,critical,none,", 0.02},
+                {"rope_hanging,native-verlet,critical,scene,", 0.05},
+                {"rope_hanging,bullet-explicit,critical,none,", 0.05},
+                {"rope_hanging,bullet-explicit,critical,scene,", 0.05},
+                {"rope_hanging,ode-quick,critical,scene,", 0.2}};
+    char row[1000];
+    finish(
+        "stability rope_hanging --engine native-verlet --engine bullet-explicit --engine ode-quick --out %s/critical",
+        0);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        find_row(row, sizeof row, "critical/stability.csv", rows[i].start);
+        assert_near(row, atof(strrchr(row, ',') + 1), 1, rows[i].tolerance);
+    }
+}
+
+// Second order, damping and all.
+static void test_precision(void **state) {
+    (void)state;
+    char row[1000];
+    finish("precision oscillator --engine native-verlet --repeats 0 --out %s/precision", 0);
+    find_row(row, sizeof row, "precision/precision_summary.csv", "oscillator,native-verlet,order");
+    assert_near(row, field_of(row, 4), 2, 0.2);
+    char *text = read_text("precision/precision.csv");
+    assert_non_null(strstr(text, ",1\n"));
+    free(text);
+}
+
+static void test_tune(void **state) {
+    (void)state;
+    char row[1000];
+    finish("tune rope_hanging --engine bullet-pbd --error 0.01 --validate rope_catenary --out %s/tune", 0);
+    find_row(row, sizeof row, "tune/tune.csv", "rope_hanging,bullet-pbd,best");
+    assert_non_null(strstr(row, ",yes,"));
+    find_row(row, sizeof row, "tune/tune.csv", "rope_catenary,bullet-pbd,validation");
+    finish("tune rope_hanging --error 0.01 --out %s/tune", 2);
+    finish("tune rope_hanging --engine bullet-pbd --vary mass --out %s/tune", 2);
+}
+
+// A drag that does nothing is not needed, and it alone.
+static void test_needs(void **state) {
+    (void)state;
+    char path[200], arguments[400], row[1000];
+    snprintf(path, sizeof path, "%s/idle.yaml", directory);
+    FILE *file = fopen(path, "w");
+    fputs(
+        "name: idle\ncloth: {rows: 8, columns: 8, spacing: 0.1, mass: 0.2, down: [0, 0, 1]}\nsprings: {stiffness: 50, "
+        "shear: 20, damping: 0.5}\npins: [top_left, top_right]\ngravity: [0, -9.81, 0]\ndrag: 1.0e-7\ntime: "
+        "{duration: 1, step: 0.02}\n",
+        file);
+    fclose(file);
+    snprintf(arguments, sizeof arguments, "needs %s --out %%s/needs", path);
+    finish(arguments, 0);
+    char *text = read_text("needs/needs.csv"), *output = read_text("output");
+    for (char *at = text; (at = strstr(at, "\nidle,native-verlet,drag,")); at++)
+        if (strstr(at, ",yes,") && strstr(at, ",yes,") < strchr(at + 1, '\n')) fail_msg("drag is said to matter");
+    assert_non_null(strstr(output, "drag                     is not needed"));
+    assert_non_null(strstr(output, "shear                    is needed"));
+    assert_non_null(strstr(output, "spring damping           is needed"));
+    find_row(row, sizeof row, "needs/needs.csv", "idle,native-verlet,drag,sag");
+    free(text);
+    free(output);
+}
+
+static int make_directory(void **state) {
+    (void)state;
+    return mkdtemp(directory) ? 0 : -1;
+}
+
+static int remove_directory(void **state) {
+    (void)state;
+    char command[100];
+    snprintf(command, sizeof command, "rm -r %s", directory);
+    return system(command);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limits),    cmocka_unit_test(test_kill), cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_critical),  cmocka_unit_test(test_tune), cmocka_unit_test(test_needs),
+        cmocka_unit_test(test_precision),
+    };
+    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+}
