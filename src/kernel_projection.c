@@ -9,6 +9,8 @@
 #define DEPTH 4
 // Rows between a sweep and the next: neither then touches the other's.
 #define LAG 2
+// Vectors of a row beyond which it alone has work enough, and several would not stay in the first cache.
+#define WIDE 10
 // Vectors of springs that go through each operation together: a processor would not look far enough ahead to fill the
 // wait for one's result with another's work.
 #define GROUP 4
@@ -19,7 +21,7 @@ typedef enum Colour { ALONG_EVEN, ALONG_ODD, ALONG_LAST, DOWN, DOWN_RIGHT, DOWN_
 // What project_springs needs of a kind of springs.
 typedef struct Compliant {
     double compliance, gamma;   // α̃ and γ̃
-    double one_free, both_free; // 1/((1 + γ̃)·W + α̃) with one end free, or both
+    double one_free, both_free; // relaxation/((1 + γ̃)·W + α̃) with one end free, or both
 } Compliant;
 
 struct ck_ProjectedCloth {
@@ -64,6 +66,7 @@ CK_INLINE void move(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes3 
 // Change, before masses: (l² − L²)/(4·(d·d_start)) along d_start, where masses cancel. A bar that turned by more than
 // 60° in a substep is projected along itself instead.
 CK_INLINE void project_bars(const ck_ProjectedCloth *cloth, const Ends *ends, const int count, const int terms) {
+    const double quarter = 0.25 * cloth->rule.relaxation;
     ck_Lanes3 now[GROUP], old[GROUP];
     ck_Lanes scale[GROUP];
     for (int i = 0; i < count; i++) {
@@ -76,7 +79,7 @@ CK_INLINE void project_bars(const ck_ProjectedCloth *cloth, const Ends *ends, co
         ck_LaneMask turned = along < (ck_Lanes){0} + 0.5 * squared_rest;
         old[i] = ck_lanes3_choose(turned, now[i], old[i]);
         along = ck_lanes_choose(turned, squared, along);
-        ck_Lanes share = 0.25 * (squared - squared_rest);
+        ck_Lanes share = quarter * (squared - squared_rest);
         if (terms & HELD) share += share - share * both_alike(cloth, &ends[i]);
         scale[i] = ck_lanes_where(along > (ck_Lanes){0}, share / along);
         if (ends[i].paired) scale[i] *= ck_lanes_load(ends[i].paired);
@@ -163,8 +166,9 @@ typedef struct Wave {
     int sweeps, wave;
 } Wave;
 
-CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const Wave *wave, Colour colour, const int terms) {
-    for (int i = 0; i < wave->sweeps; i++) {
+CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const Wave *wave, int first, int end, Colour colour,
+                              const int terms) {
+    for (int i = first; i < end; i++) {
         int row = wave->wave - LAG * i;
         if (row < 0 || row >= cloth->rows.rows) continue;
         if (cloth->is_held[row])
@@ -201,7 +205,7 @@ CK_INLINE void finish_row(const ck_ProjectedCloth *cloth, int row) {
                            rate * (ck_lanes_load(cloth->x[axis] + i) - ck_lanes_load(cloth->start[axis] + i)));
 }
 
-// Colour by colour, so that the sweeps in flight give each other's neighbours in time. A substep's first sweep finds
+// Colour by colour, so that each sweep in flight has the others' work to wait with. A substep's first sweep finds
 // the row below predicted; its last leaves the row done.
 CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, const int terms) {
     for (int i = 0; i < wave->sweeps; i++) {
@@ -212,12 +216,15 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, con
         if (row == 0) predict_row(cloth, 0, is_last);
         if (row + 1 < cloth->rows.rows) predict_row(cloth, row + 1, is_last);
     }
-    project_colour(cloth, wave, ALONG_EVEN, terms);
-    project_colour(cloth, wave, ALONG_ODD, terms);
-    project_colour(cloth, wave, ALONG_LAST, terms);
-    project_colour(cloth, wave, DOWN, terms);
-    project_colour(cloth, wave, DOWN_RIGHT, terms);
-    project_colour(cloth, wave, DOWN_LEFT, terms);
+    const int together = cloth->rows.span > WIDE ? 1 : wave->sweeps;
+    for (int first = 0; first < wave->sweeps; first += together) {
+        project_colour(cloth, wave, first, first + together, ALONG_EVEN, terms);
+        project_colour(cloth, wave, first, first + together, ALONG_ODD, terms);
+        project_colour(cloth, wave, first, first + together, ALONG_LAST, terms);
+        project_colour(cloth, wave, first, first + together, DOWN, terms);
+        project_colour(cloth, wave, first, first + together, DOWN_RIGHT, terms);
+        project_colour(cloth, wave, first, first + together, DOWN_LEFT, terms);
+    }
     for (int i = 0; i < wave->sweeps; i++) {
         int row = wave->wave - LAG * i;
         if ((wave->first_sweep + i + 1) % cloth->rule.iterations == 0 && row >= 0 && row < cloth->rows.rows)
@@ -283,8 +290,8 @@ static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, con
         double stiffness = rule->compliance > 0 ? 1 / rule->compliance : springs->stiffness[kind];
         compliant->compliance = 1 / (stiffness * dt * dt);
         compliant->gamma = springs->damping / (stiffness * dt);
-        compliant->one_free = 1 / ((1 + compliant->gamma) * light + compliant->compliance);
-        compliant->both_free = 1 / ((1 + compliant->gamma) * 2 * light + compliant->compliance);
+        compliant->one_free = rule->relaxation / ((1 + compliant->gamma) * light + compliant->compliance);
+        compliant->both_free = rule->relaxation / ((1 + compliant->gamma) * 2 * light + compliant->compliance);
     }
 }
 

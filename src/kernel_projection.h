@@ -22,6 +22,7 @@ typedef struct ck_ProjectionRule {
     double carry, push[3]; // 1 and m/s
     double keep;
     double compliance; // m/N of every spring; 0: 1/k of each
+    double relaxation; // times which each correction is made: 1, or up to 2 for fewer sweeps
 } ck_ProjectionRule;
 
 typedef struct ck_ProjectedCloth ck_ProjectedCloth;

@@ -28,7 +28,8 @@ static void sweep(ck_Native *native) {
             along = length_squared;
         }
         if (!(along > 0)) continue;
-        double scale = 0.5 * (length_squared - bar->rest * bar->rest) / (along * (weight_a + weight_b));
+        double scale =
+            0.5 * native->used.relaxation * (length_squared - bar->rest * bar->rest) / (along * (weight_a + weight_b));
         ck_add_scaled(a, weight_a * scale, old);
         ck_add_scaled(b, -weight_b * scale, old);
     }
@@ -45,6 +46,7 @@ static bool relax(ck_Native *native) {
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps,
                           .iterations = wanted->iterations ? wanted->iterations : ck_stability_sweeps(model),
+                          .relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1,
                           .threads = wanted->threads};
     if (!used->substeps)
         used->substeps = ck_stability_substeps(
@@ -54,7 +56,8 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 
 static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
     const double half = 0.5 * native->model->drag * native->dt;
-    ck_ProjectionRule rule = {CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1, 0};
+    ck_ProjectionRule rule = {
+        CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1, 0, native->used.relaxation};
     ck_model_field(native->model, 0, rule.push);
     for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
     return ck_native_project_rows(native, &rule, error);

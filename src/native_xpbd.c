@@ -26,7 +26,7 @@ static void sweep(ck_Native *native) {
             moved[axis] = d[axis] - (native->start[3 * spring->b + axis] - native->start[3 * spring->a + axis]);
         double residual =
             length - spring->rest + compliance * native->multiplier[i] + damping * ck_dot(moved, d) / length;
-        double change = -residual / ((1 + damping) * (weight_a + weight_b) + compliance);
+        double change = -native->used.relaxation * residual / ((1 + damping) * (weight_a + weight_b) + compliance);
         native->multiplier[i] += change;
         ck_add_scaled(a, -weight_a * change / length, d);
         ck_add_scaled(b, weight_b * change / length, d);
@@ -85,6 +85,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                           .iterations = wanted->iterations             ? wanted->iterations
                                         : model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model)
                                                                        : 1,
+                          .relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1,
                           .compliance = wanted->compliance,
                           .threads = wanted->threads};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
@@ -108,9 +109,14 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 
 static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
     const double dt = native->dt;
-    ck_ProjectionRule rule = {
-        CK_PROJECT_SPRINGS,     dt, native->iterations, 1, {0}, 1 / (1 + native->model->drag * dt),
-        native->used.compliance};
+    ck_ProjectionRule rule = {CK_PROJECT_SPRINGS,
+                              dt,
+                              native->iterations,
+                              1,
+                              {0},
+                              1 / (1 + native->model->drag * dt),
+                              native->used.compliance,
+                              native->used.relaxation};
     ck_model_field(native->model, 0, rule.push);
     for (int axis = 0; axis < 3; axis++) rule.push[axis] *= dt;
     return ck_native_project_rows(native, &rule, error);

@@ -83,7 +83,8 @@ static ck_Spring *springs_in_order(const ck_Model *model, ck_Method method, cons
 bool ck_prediction_rest(const ck_Model *model, ck_Method method, const ck_Settings *used, const double *truth,
                         double *position) {
     Softening softening;
-    if (used->iterations != 1 || used->klst > 0 || used->compliance > 0 || !model->spring_count ||
+    if (used->iterations != 1 || used->klst > 0 || used->compliance > 0 ||
+        (used->relaxation > 0 && used->relaxation != 1) || !model->spring_count ||
         !soften(&softening, method, &model->springs[0], 1, 1))
         return false;
     size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;

@@ -25,9 +25,20 @@ static const double shares[] = {0.25, 0.5, 0.9, 1.1, 2, 4, 8, 16};
 #define SHARES ((int)(sizeof shares / sizeof *shares))
 
 // What becomes of a probe.
-typedef enum Class { OK, UNSETTLED, OVERSTRETCHED, ENERGY_GAIN, DIVERGED, ABORTED, FROZEN, CLAMPED, REFUSED } Class;
+typedef enum Class {
+    OK,
+    UNSETTLED,
+    OVERSTRETCHED,
+    ENERGY_GAIN,
+    DIVERGED,
+    ABORTED,
+    FROZEN,
+    CLAMPED,
+    UNSUPPORTED,
+    REFUSED
+} Class;
 static const char *const class_names[] = {"ok",      "unsettled", "overstretched", "energy_gain", "diverged",
-                                          "aborted", "frozen",    "clamped",       "refused"};
+                                          "aborted", "frozen",    "clamped",       "unsupported", "refused"};
 
 enum { CLASS, DT, STRAIN_EXCESS, SPEED, PREDICTED, STABLE, UNSTABLE };
 
@@ -155,16 +166,21 @@ static ck_Status find_rest(ck_StabilityRest *rest, const ck_StabilityMap *map, d
     return status;
 }
 
-static bool iterates(const ck_Engine *engine) {
-    return engine->method == CK_METHOD_XPBD || engine->method == CK_METHOD_BULLET_PBD ||
-           engine->method == CK_METHOD_STOERMER_BARS;
+// True where the method has iterations to set; false, too, where the engine does not take the scene.
+static bool iterates(const ck_Engine *engine, const ck_Model *model) {
+    ck_Settings used, wanted = {.substeps = 1};
+    void *state;
+    if ((model->terms & ~engine->terms) || engine->create(&state, model, &wanted, &used, NULL, NULL)) return false;
+    engine->destroy(state);
+    return used.iterations > 0;
 }
 
 static void add_engine(ck_StabilityMap *map, const ck_Engine *engine) {
+    bool has_iterations = iterates(engine, &map->comparison->model);
     for (int i = 0; i < CK_STABILITY_RESTS; i++)
         for (int share = 0; share < SHARES; share++)
             for (uint32_t iterations = 0; iterations <= 10; iterations += 10)
-                if (iterations == 0 || iterates(engine))
+                if (iterations == 0 || has_iterations)
                     map->cases[map->case_count++] =
                         (ck_StabilityCase){engine, false, false, stiffnesses[i], shares[share], iterations};
     // without damping a method whose own rest is elsewhere swings about it for ever, which is no blow-up
@@ -279,7 +295,7 @@ static Class judge(const ck_Run *run, double size, double gravity, double *strai
 static Class class_of(const ck_Run *run) {
     switch (run->status) {
     case CK_RUN_DIVERGED: return DIVERGED;
-    case CK_RUN_UNSUPPORTED:
+    case CK_RUN_UNSUPPORTED: return UNSUPPORTED;
     case CK_RUN_REFUSED: return REFUSED;
     default: return ABORTED;
     }
@@ -340,6 +356,10 @@ static ck_Status probe(Probe *out, const ck_StabilityMap *map, const ck_Stabilit
     return status;
 }
 
+static bool has_no_result(Class class) {
+    return class == ABORTED || class == UNSUPPORTED || class == REFUSED;
+}
+
 static bool is_blow_up(Class class) {
     return class == DIVERGED || class == ENERGY_GAIN || class == CLAMPED;
 }
@@ -355,17 +375,17 @@ static ck_Status bisect(const ck_StabilityMap *map, const ck_StabilityCase *one,
     ck_Status status = CK_OK;
     while (!status && !(unstable / stable < CLOSE) && dt < LONGEST && dt > 1e-7) {
         status = probe(&now, map, one, dt, error);
-        if (now.class == ABORTED || now.class == REFUSED) break;
+        if (has_no_result(now.class)) break;
         if (is_blow_up(now.class))
             unstable = dt;
         else
             stable = dt;
         dt = isnan(unstable) ? 2 * stable : isnan(stable) ? 0.5 * unstable : sqrt(stable * unstable);
     }
-    row->values[CLASS] = isnan(unstable) || now.class == ABORTED || now.class == REFUSED ? now.class : OK;
+    row->values[CLASS] = isnan(unstable) || has_no_result(now.class) ? now.class : OK;
     row->values[STABLE] = stable;
     row->values[UNSTABLE] = unstable;
-    if (now.class == ABORTED || now.class == REFUSED)
+    if (has_no_result(now.class))
         snprintf(row->reason, sizeof row->reason, "%s", now.reason);
     else if (isnan(unstable))
         snprintf(row->reason, sizeof row->reason, "no blow-up up to %.3g s", stable);
