@@ -2,6 +2,7 @@
 
 #include "random.h"
 
+#include <assert.h>
 #include <csv.h>
 #include <errno.h>
 #include <math.h>
@@ -14,7 +15,9 @@
 
 const char *const ck_baseline_columns[] = {"scene", "engine", "status", "metric", "value", "band", NULL};
 
-enum { CPU, VALUES, BANDS = VALUES + 17 };
+// Where a study's row holds what; there is room for as many metrics.
+#define MOST_METRICS ((CK_JOURNAL_VALUES - 1) / 2)
+enum { CPU, VALUES, BANDS = VALUES + MOST_METRICS };
 
 typedef struct Reader {
     ck_Baseline *baseline;
@@ -103,6 +106,15 @@ void ck_baseline_free(ck_Baseline *baseline) {
     *baseline = (ck_Baseline){0};
 }
 
+void ck_baseline_add(const ck_BaselineRow *row, ck_Csv *csv) {
+    ck_csv_text(csv, row->scene);
+    ck_csv_text(csv, row->engine);
+    ck_csv_text(csv, row->status);
+    ck_csv_text(csv, row->metric);
+    ck_csv_number(csv, row->value);
+    ck_csv_number(csv, row->band);
+}
+
 static void describe(const void *context, int index, char *key, size_t size) {
     const ck_CheckCase *one = &((const ck_Check *)context)->cases[index];
     snprintf(key, size, "%s %s", one->comparison->model.name, one->engine->name);
@@ -143,6 +155,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     ck_Measurement now, nudged;
     ck_Status status = measure(check, one, &one->comparison->model, &now, error);
     if (status) return status;
+    assert(ck_metric_count() <= MOST_METRICS);
     row->status = (int)now.status;
     snprintf(row->reason, sizeof row->reason, "%s", now.reason);
     row->values[CPU] = now.cpu;
@@ -191,12 +204,13 @@ bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seco
         bool is_bare = i == ck_metric_count();
         if (is_bare ? has_any : isnan(row->values[VALUES + i]) || isnan(row->values[BANDS + i])) continue;
         has_any = true;
-        ck_csv_text(csv, one->comparison->model.name);
-        ck_csv_text(csv, one->engine->name);
-        ck_csv_text(csv, ck_run_status_names[row->status]);
-        ck_csv_text(csv, is_bare ? "" : ck_metric_at(i)->name);
-        ck_csv_number(csv, is_bare ? NAN : row->values[VALUES + i]);
-        ck_csv_number(csv, is_bare ? NAN : row->values[BANDS + i]);
+        ck_BaselineRow made = {.value = is_bare ? NAN : row->values[VALUES + i],
+                               .band = is_bare ? NAN : row->values[BANDS + i]};
+        snprintf(made.scene, sizeof made.scene, "%s", one->comparison->model.name);
+        snprintf(made.engine, sizeof made.engine, "%s", one->engine->name);
+        snprintf(made.status, sizeof made.status, "%s", ck_run_status_names[row->status]);
+        snprintf(made.metric, sizeof made.metric, "%s", is_bare ? "" : ck_metric_at(i)->name);
+        ck_baseline_add(&made, csv);
     }
     return true;
 }

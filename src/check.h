@@ -24,6 +24,9 @@ typedef struct ck_Baseline {
 ck_Status ck_baseline_read(ck_Baseline *baseline, const char *path, ck_Error *error);
 void ck_baseline_free(ck_Baseline *baseline);
 
+// Adds a row as it is.
+void ck_baseline_add(const ck_BaselineRow *row, ck_Csv *csv);
+
 // One run to check, or to make a baseline of.
 typedef struct ck_CheckCase {
     const ck_Comparison *comparison; // with its truth

@@ -107,12 +107,23 @@ static int print_worst(const Work *work, int most) {
     return count;
 }
 
+static bool is_measured(const ck_Check *check, const ck_BaselineRow *row) {
+    for (int i = 0; i < check->case_count; i++)
+        if (!strcmp(check->cases[i].comparison->model.name, row->scene) &&
+            !strcmp(check->cases[i].engine->name, row->engine))
+            return true;
+    return false;
+}
+
+// What was not measured now stays as it was.
 static ck_Status update(const Work *work, ck_Error *error) {
     ck_Csv csv = {0};
     int failed = ck_path_make(BASELINE_DIRECTORY);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", BASELINE_DIRECTORY, strerror(failed)) : CK_OK;
     if (!status) status = ck_csv_open(&csv, BASELINE_DIRECTORY, BASELINE_NAME, ck_baseline_columns, error);
     int added = 0;
+    for (int i = 0; i < work->baseline.count && !status; i++)
+        if (!is_measured(&work->check, &work->baseline.rows[i])) ck_baseline_add(&work->baseline.rows[i], &csv);
     for (int i = 0; i < work->check.case_count && !status; i++)
         added += ck_check_add(&work->check.cases[i], &work->rows[i], SECONDS, &csv);
     if (!status) status = ck_csv_close(&csv, error);

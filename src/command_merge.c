@@ -16,9 +16,10 @@ static int run_question(char *question, const char *out) {
         {"precision", ck_command_precision}, {"stability", ck_command_stability}, {"needs", ck_command_needs}};
     char *words[MAX_WORDS + 3];
     int count = 0;
-    char *end = strstr(question, " (scene ");
+    char *end = strstr(question, "\t(scene ");
     if (end) *end = 0;
-    for (char *word = strtok(question, " "); word && count < MAX_WORDS; word = strtok(NULL, " ")) words[count++] = word;
+    for (char *word = strtok(question, "\t"); word && count < MAX_WORDS; word = strtok(NULL, "\t"))
+        words[count++] = word;
     words[count++] = "--out";
     words[count++] = (char *)out;
     words[count] = NULL;

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 // What was asked, in words that tell it apart from anything else: the command without what only says where and how
-// fast, the scene's text and the program.
+// fast, the scene's text and the program. Words stand between tabs, as they may hold spaces.
 static void write_question(ck_StudyCommand *command, int argc, char **argv) {
     static const char *const silent[] = {"--out", "--jobs", "--shard"};
     const ck_Document *document = &command->comparison->scene.document;
@@ -20,10 +20,10 @@ static void write_question(ck_StudyCommand *command, int argc, char **argv) {
         if (is_silent)
             i++;
         else
-            used += (size_t)snprintf(command->question + used, size - used, "%s%s", used ? " " : "", argv[i]);
+            used += (size_t)snprintf(command->question + used, size - used, "%s%s", used ? "\t" : "", argv[i]);
     }
     if (used < size)
-        snprintf(command->question + used, size - used, " (scene %016llx, clothcheck %s)",
+        snprintf(command->question + used, size - used, "\t(scene %016llx, clothcheck %s)",
                  (unsigned long long)ck_hash(CK_HASH_START, document->text, document->length), CK_VERSION);
 }
 
