@@ -24,7 +24,8 @@ enum {
     LIKE,
     VARY,
     VALIDATE,
-    UPDATE
+    UPDATE,
+    KEPT
 };
 
 // Options, what they are, and the groups of commands that take them; 0: all.
@@ -48,7 +49,7 @@ static const struct {
          "--threads N          that share a step of native-verlet, native-bars and native-xpbd on regular cloths"},
     [JOBS] = {"jobs", CK_TAKES_JOBS,
               "--jobs N             worker processes (usually one a core; one where time counts)"},
-    [SHARD] = {"shard", CK_TAKES_JOBS,
+    [SHARD] = {"shard", CK_TAKES_SHARD,
                "--shard I/N          only every N-th case, from the I-th; 'clothcheck merge' joins the parts"},
     [ERROR] = {"error", CK_TAKES_GOAL | CK_TAKES_ERROR, "--error X            a tolerance, in units of size"},
     [LIKE] = {"like", CK_TAKES_GOAL, "--like ENGINE        come close to that engine's path instead of the truth"},
@@ -57,6 +58,8 @@ static const struct {
     [VALIDATE] = {"validate", CK_TAKES_GOAL,
                   "--validate SCENE     try the result on that scene, too; may be given several times"},
     [UPDATE] = {"update", CK_TAKES_UPDATE, "--update             write the baseline anew, and print what moved"},
+    [KEPT] = {"kept", CK_TAKES_SHARD,
+              "--kept               run nothing: write what the journal in --out holds, or fail"},
 };
 #define OPTIONS ((int)(sizeof known_options / sizeof *known_options))
 
@@ -183,7 +186,10 @@ static ck_Status read_option(ck_Arguments *arguments, int option, const char *va
         if (!status) options->repeats = (int)number;
         break;
     case BUDGET: status = read_number(&options->budget, value, 0, 1e6, "--budget", error); break;
-    case TIME_LIMIT: status = read_number(&options->limits.seconds, value, 0, 1e9, "--time-limit", error); break;
+    case TIME_LIMIT:
+        arguments->has_time_limit = true;
+        status = read_number(&options->limits.seconds, value, 0, 1e9, "--time-limit", error);
+        break;
     case MEMORY_LIMIT:
         status = read_number(&number, value, 0, 1e9, "--memory-limit", error);
         if (!status) options->limits.memory_bytes = (size_t)(number * 1048576);
@@ -199,6 +205,7 @@ static ck_Status read_option(ck_Arguments *arguments, int option, const char *va
     case SHARD: status = read_shard(arguments, value, error); break;
     case ERROR: status = read_number(&arguments->error, value, 0, 1e6, "--error", error); break;
     case LIKE: status = find_engine(&arguments->like, value, error); break;
+    case KEPT: arguments->runs_nothing = true; break;
     case UPDATE: arguments->is_update = true; break;
     case VARY: status = add_variable(arguments, value, error); break;
     case VALIDATE: status = add_validation(arguments, value, error); break;
@@ -235,6 +242,14 @@ ck_Status ck_arguments_all_scenes(ck_Arguments *arguments, ck_Error *error) {
     return status;
 }
 
+// Adds an option and its value, or a word alone.
+static ck_Status add_to_question(ck_Arguments *arguments, const char *option, const char *value, ck_Error *error) {
+    size_t size = sizeof arguments->question, used = strlen(arguments->question);
+    used += (size_t)snprintf(arguments->question + used, size - used, "%s%s%s%s%s", used ? "\t" : "",
+                             option ? "--" : "", option ? option : "", option && value ? "\t" : "", value ? value : "");
+    return used < size ? CK_OK : ck_fail(error, CK_BAD_INPUT, "the command line is longer than %zu characters", size);
+}
+
 ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, unsigned groups, ck_Error *error) {
     *arguments = (ck_Arguments){.options = ck_compare_options_default(), .error = NAN};
     arguments->options.overrides = arguments->overrides;
@@ -242,9 +257,9 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, unsi
     int count = 0;
     for (int i = 0; i < OPTIONS; i++)
         if (!known_options[i].groups || (known_options[i].groups & groups))
-            table[count++] =
-                (struct option){known_options[i].name, i == UPDATE ? no_argument : required_argument, NULL, i};
-    ck_Status status = CK_OK;
+            table[count++] = (struct option){known_options[i].name,
+                                             i == UPDATE || i == KEPT ? no_argument : required_argument, NULL, i};
+    ck_Status status = add_to_question(arguments, NULL, argv[0], error);
     optind = 0; // start anew, whoever parsed before
     opterr = 0;
     for (int option; !status && (option = getopt_long(argc, argv, ":", table, NULL)) != -1;) {
@@ -252,8 +267,13 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, unsi
             return ck_fail(error, CK_BAD_INPUT, "%s: %s; 'clothcheck %s --help' tells what there is", argv[optind - 1],
                            option == ':' ? "needs a value" : "no such option", argv[0]);
         status = read_option(arguments, option, optarg, error);
+        if (!status && option != OUT && option != JOBS && option != SHARD && option != KEPT)
+            status = add_to_question(arguments, known_options[option].name, optarg, error);
     }
-    for (int i = optind; i < argc && !status; i++) status = add_scene(arguments, argv[i], error);
+    for (int i = optind; i < argc && !status; i++) {
+        status = add_scene(arguments, argv[i], error);
+        if (!status) status = add_to_question(arguments, NULL, argv[i], error);
+    }
     return status;
 }
 

@@ -126,9 +126,9 @@ double ck_check_band(double value, double nudged) {
 
 static ck_Status measure(const ck_Check *check, const ck_CheckCase *one, const ck_Model *model,
                          ck_Measurement *measurement, ck_Error *error) {
-    const ck_Settings wanted = ck_engine_settings(one->engine, model);
+    const ck_Settings wanted = ck_comparison_settings(one->engine, model, check->options);
     return ck_measurement_take(measurement, model, &one->comparison->truth.reference, one->engine, &wanted,
-                               &check->limits, NULL, error);
+                               &check->options->limits, NULL, error);
 }
 
 // The same from a start that is off by what stands for rounding.

@@ -36,7 +36,7 @@ typedef struct ck_CheckCase {
 typedef struct ck_Check {
     ck_CheckCase *cases; // the caller's
     int case_count;
-    ck_Limits limits;
+    const ck_CompareOptions *options;
     bool is_update; // finds bands, too
 } ck_Check;
 

@@ -33,6 +33,8 @@ typedef struct ck_Arguments {
     const char *out; // directory; NULL: none
     int jobs;        // worker processes of a study; 0: as many as suit it
     int shard, shards;
+    bool has_time_limit, runs_nothing;
+    char question[2048];               // what is asked, without where to and how fast; words between tabs
     double error;                      // a tolerance; NAN: none
     const ck_Engine *like;             // NULL: none
     bool varies[CK_SETTING_COUNT + 1]; // of --vary; the last is stiffness
@@ -47,6 +49,7 @@ typedef struct ck_Arguments {
 typedef enum ck_ArgumentGroup {
     CK_TAKES_TIMING = 1,
     CK_TAKES_JOBS = 2,
+    CK_TAKES_SHARD = 32,
     CK_TAKES_GOAL = 4,
     CK_TAKES_ERROR = 8,
     CK_TAKES_UPDATE = 16

@@ -53,7 +53,7 @@ static ck_Status load_scenes(Work *work, ck_Error *error) {
 static ck_Status list_cases(Work *work, ck_Error *error) {
     const ck_CompareOptions *options = &work->arguments.options;
     ck_Check *check = &work->check;
-    check->limits = options->limits;
+    check->options = options;
     check->is_update = work->arguments.is_update;
     check->cases = calloc((size_t)(work->comparison_count * options->engine_count) + 1, sizeof *check->cases);
     if (!check->cases) return ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -73,7 +73,8 @@ static ck_Status run_cases(Work *work, ck_Error *error) {
     const ck_Study study = ck_check_study(&work->check);
     int jobs = work->arguments.jobs ? work->arguments.jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
     // a check is of the code as it is now: nothing is taken from an older one
-    const ck_StudyOptions options = {work->arguments.out, "check", jobs > 0 ? jobs : 1, 0, 0, isatty(STDERR_FILENO)};
+    const ck_StudyOptions options = {work->arguments.out,   "check", jobs > 0 ? jobs : 1, 0, 0,
+                                     isatty(STDERR_FILENO), false};
     ck_study_forget(&study, &options);
     ck_Status status = ck_study_run(&study, &options, work->rows, error);
     ck_study_forget(&study, &options);

@@ -14,12 +14,13 @@ static int run_question(char *question, const char *out) {
         int (*run)(int argc, char **argv);
     } studies[] = {
         {"precision", ck_command_precision}, {"stability", ck_command_stability}, {"needs", ck_command_needs}};
-    char *words[MAX_WORDS + 3];
+    char *words[MAX_WORDS + 4];
     int count = 0;
     char *end = strstr(question, "\t(scene ");
     if (end) *end = 0;
     for (char *word = strtok(question, "\t"); word && count < MAX_WORDS; word = strtok(NULL, "\t"))
         words[count++] = word;
+    words[count++] = "--kept";
     words[count++] = "--out";
     words[count++] = (char *)out;
     words[count] = NULL;

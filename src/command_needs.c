@@ -16,9 +16,11 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     ck_Needs needs;
     ck_Csv csv = {0};
     ck_JournalRow *rows = NULL;
+    const ck_Engine *engine = choose_engine(command);
+    const ck_Settings given = ck_comparison_settings(engine, &command->comparison->model, &arguments->options);
     ck_Status status =
-        ck_needs_create(&needs, command->comparison, choose_engine(command),
-                        isnan(arguments->error) ? 0.01 : arguments->error, &arguments->options.limits, error);
+        ck_needs_create(&needs, command->comparison, engine, isnan(arguments->error) ? 0.01 : arguments->error, &given,
+                        &arguments->options.limits, error);
     const ck_Study study = ck_needs_study(&needs);
     if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
     if (!status) status = ck_csv_open(&csv, arguments->out, "needs.csv", ck_needs_columns, error);
@@ -37,5 +39,5 @@ int ck_command_needs(int argc, char **argv) {
                             "second particle, and says which of them change any metric by\nmore than --error (usually "
                             "0.01), and what each costs; writes needs.csv. The engine is the first that models all\n"
                             "there is, or --engine.",
-                            CK_TAKES_JOBS | CK_TAKES_ERROR, 60, run);
+                            CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR, 60, run);
 }

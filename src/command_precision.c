@@ -31,5 +31,5 @@ int ck_command_precision(int argc, char **argv) {
                             "precision.csv with error, cost and the Pareto front, and precision_summary.csv with "
                             "orders,\nfloors and the cost to reach 10, 1 and 0.1 %. A run may take 20 s where "
                             "--time-limit does not say otherwise.",
-                            CK_TAKES_TIMING | CK_TAKES_JOBS, 20, run);
+                            CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD, 20, run);
 }

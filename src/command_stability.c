@@ -24,5 +24,5 @@ int ck_command_stability(int argc, char **argv) {
                             "time steps, stiffnesses and iterations, and the critical step by\nbisection to 1 % beside "
                             "what theory says; writes stability.csv. A run may take 10 s\n"
                             "where --time-limit does not say otherwise.",
-                            CK_TAKES_JOBS, 10, run);
+                            CK_TAKES_JOBS | CK_TAKES_SHARD, 10, run);
 }

@@ -16,15 +16,17 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     const ck_Arguments *arguments = command->arguments;
     if (arguments->options.engines != arguments->engines || arguments->options.engine_count != 1)
         return ck_fail(error, CK_BAD_INPUT, "tune needs one --engine NAME");
-    ck_TuneOptions options = {.engine = arguments->engines[0],
-                              .tolerance = arguments->error,
-                              .like = arguments->like,
-                              .validate = arguments->validate,
-                              .validate_count = arguments->validate_count,
-                              .directory = arguments->out,
-                              .question = command->question,
-                              .limits = arguments->options.limits,
-                              .progress = isatty(STDERR_FILENO) ? show : NULL};
+    ck_TuneOptions options = {
+        .engine = arguments->engines[0],
+        .tolerance = arguments->error,
+        .like = arguments->like,
+        .validate = arguments->validate,
+        .validate_count = arguments->validate_count,
+        .directory = arguments->out,
+        .question = command->question,
+        .given = ck_comparison_settings(arguments->engines[0], &command->comparison->model, &arguments->options),
+        .limits = arguments->options.limits,
+        .progress = isatty(STDERR_FILENO) ? show : NULL};
     for (int i = 0; i < CK_TUNE_VARIABLES; i++) options.varies[i] = arguments->varies[i];
     char *cache = ck_path_join(arguments->out, "truths");
     options.cache = cache;

@@ -48,8 +48,7 @@ ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Err
     return status ? ck_fail(error, status, "%s", why.message) : CK_OK;
 }
 
-// The scene's settings, with what the caller overrides.
-static ck_Settings settings_of(const ck_Engine *engine, const ck_Model *model, const ck_CompareOptions *options) {
+ck_Settings ck_comparison_settings(const ck_Engine *engine, const ck_Model *model, const ck_CompareOptions *options) {
     ck_Settings settings = ck_engine_settings(engine, model);
     for (int i = 0; i < options->override_count; i++) {
         const ck_Override *override = &options->overrides[i];
@@ -65,7 +64,7 @@ static void report(const ck_CompareOptions *options, const ck_Comparison *compar
 static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
     for (int i = 0; i < options->engine_count; i++) {
         ck_Run *run = &comparison->runs[i];
-        ck_Settings wanted = settings_of(options->engines[i], &comparison->model, options);
+        ck_Settings wanted = ck_comparison_settings(options->engines[i], &comparison->model, options);
         report(options, comparison, i, "measuring");
         ck_Status status =
             ck_run_measure(run, &comparison->model, options->engines[i], &wanted, &options->limits, error);

@@ -44,6 +44,9 @@ typedef struct ck_Comparison {
     int run_count;
 } ck_Comparison;
 
+// The scene's settings of an engine, with what the caller overrides.
+ck_Settings ck_comparison_settings(const ck_Engine *engine, const ck_Model *model, const ck_CompareOptions *options);
+
 // Loads and compiles a scene and checks that it has the truth it names; runs nothing. path must outlive the comparison.
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY, CK_IO. Free with ck_comparison_free in any case.
 ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Error *error);

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,6 +102,20 @@ ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char
     if (!journal->path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     journal->file = open(journal->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (journal->file < 0) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
+    if (flock(journal->file, LOCK_EX | LOCK_NB))
+        return ck_fail(error, CK_BAD_INPUT, "%s: another study is running there; give another --out", journal->path);
+    size_t length;
+    char *text = read_lines(journal->file, &length);
+    if (!text) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    free(text);
+    if (!length) return ask(journal, question, error);
+    if (ftruncate(journal->file, (off_t)length)) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
+    return ck_journal_read(journal, question, kept, context, error);
+}
+
+ck_Status ck_journal_read(const ck_Journal *journal, const char *question,
+                          void (*kept)(void *context, const char *key, const ck_JournalRow *row), void *context,
+                          ck_Error *error) {
     size_t length;
     Reader *reader = calloc(1, sizeof *reader);
     char *text = read_lines(journal->file, &length);
@@ -109,10 +124,11 @@ ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char
         *reader = (Reader){.wanted = question, .kept = kept, .context = context};
         status = parse(reader, text, length, error);
     }
-    if (!status && (!length || strcmp(reader->question, question)))
-        status = ask(journal, question, error);
-    else if (!status && ftruncate(journal->file, (off_t)length))
-        status = ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
+    if (!status && strcmp(reader->question, question))
+        status = ck_fail(error, CK_BAD_INPUT,
+                         "%s: holds an unfinished study that was asked otherwise (other options, scene or program); "
+                         "finish that one, remove the file or give another --out",
+                         journal->path);
     free(text);
     free(reader);
     return status;

@@ -25,10 +25,16 @@ typedef struct ck_Journal {
     char *path;
 } ck_Journal;
 
-// Opens or starts directory/name. One whose question is another one starts anew.
+// Opens or starts directory/name, for one process and its children at a time.
 //   question  what was asked: the same question has the same cases;  kept  called for each row that was there
-// Errors: CK_IO, CK_NO_MEMORY. End with ck_journal_close in any case.
+// Errors: CK_BAD_INPUT where it holds another question's cases, or another process has it; CK_IO, CK_NO_MEMORY. End
+// with ck_journal_close in any case.
 ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char *name, const char *question,
+                          void (*kept)(void *context, const char *key, const ck_JournalRow *row), void *context,
+                          ck_Error *error);
+
+// Reads all rows again, those that other processes have added among them. Errors: CK_NO_MEMORY.
+ck_Status ck_journal_read(const ck_Journal *journal, const char *question,
                           void (*kept)(void *context, const char *key, const ck_JournalRow *row), void *context,
                           ck_Error *error);
 

@@ -177,9 +177,16 @@ static void list_cases(ck_Needs *needs) {
 }
 
 ck_Status ck_needs_create(ck_Needs *needs, const ck_Comparison *comparison, const ck_Engine *engine, double tolerance,
-                          const ck_Limits *limits, ck_Error *error) {
+                          const ck_Settings *given, const ck_Limits *limits, ck_Error *error) {
     *needs = (ck_Needs){.comparison = comparison, .engine = engine, .tolerance = tolerance, .limits = *limits};
-    const ck_Settings wanted = ck_engine_settings(engine, &comparison->model);
+    if (engine->method == CK_METHOD_NONE)
+        return ck_fail(error, CK_BAD_INPUT, "%s moves nothing, so that it needs nothing; give another --engine",
+                       engine->name);
+    if (comparison->scene.file->colliders_count > CK_NEEDS_MOST - TERMS)
+        return ck_fail(error, CK_REFUSED, "%s: has more than %d colliders to leave out", comparison->path,
+                       CK_NEEDS_MOST - TERMS);
+    needs->given = *given;
+    const ck_Settings wanted = *given;
     // no truth: with and without are set against each other
     const ck_Reference none = {.is_static = comparison->truth.reference.is_static};
     ck_Status status =
@@ -214,7 +221,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     ck_Measurement without;
     ck_Run run = {0};
     ck_Status status = ck_model_build(&model, &scene, error);
-    const ck_Settings wanted = ck_engine_settings(needs->engine, &model);
+    const ck_Settings wanted = needs->given;
     const ck_Reference none = {.is_static = needs->comparison->truth.reference.is_static};
     if (!status)
         status = ck_measurement_take(&without, &model, &none, needs->engine, &wanted, &needs->limits, &run, error);

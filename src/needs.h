@@ -20,7 +20,8 @@ typedef struct ck_NeedsCase {
 typedef struct ck_Needs {
     const ck_Comparison *comparison;
     const ck_Engine *engine;
-    double tolerance; // of a change, in the metric's unit, or relative where it has one
+    ck_Settings given; // what the user sets of the engine
+    double tolerance;  // of a change, in the metric's unit, or relative where it has one
     ck_Limits limits;
     ck_Run base; // the whole scene
     ck_Measurement whole;
@@ -31,7 +32,7 @@ typedef struct ck_Needs {
 // Runs the whole scene and lists what can be left out. Errors: CK_REFUSED where the engine does not get through it,
 // CK_NO_MEMORY, CK_IO. Free with ck_needs_free in any case.
 ck_Status ck_needs_create(ck_Needs *needs, const ck_Comparison *comparison, const ck_Engine *engine, double tolerance,
-                          const ck_Limits *limits, ck_Error *error);
+                          const ck_Settings *given, const ck_Limits *limits, ck_Error *error);
 void ck_needs_free(ck_Needs *needs);
 
 ck_Study ck_needs_study(const ck_Needs *needs);

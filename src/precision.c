@@ -50,9 +50,7 @@ static uint32_t scaled(uint32_t count, double factor) {
 
 static void add_engine(ck_Precision *precision, const ck_Engine *engine, const ck_CompareOptions *options) {
     const ck_Model *model = &precision->comparison->model;
-    ck_Settings wanted = ck_engine_settings(engine, model), used;
-    for (int i = 0; i < options->override_count; i++)
-        if (options->overrides[i].engine == engine) ck_settings_override(&wanted, &options->overrides[i].settings);
+    ck_Settings wanted = ck_comparison_settings(engine, model, options), used;
     if (!find_automatic(engine, model, &wanted, &used)) {
         add_case(precision, engine, wanted, false); // its row says why
         return;

@@ -40,7 +40,7 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"*.compliance", CK_RANGE_SETTING},
     {"*.klst", CK_RANGE_UNIT},
     {"*.reordered", CK_RANGE_UNIT},
-    {"*.threads", CK_RANGE_SETTING},
+    {"*.threads", CK_RANGE_THREADS},
     {NULL, CK_RANGE_FINITE},
 };
 

@@ -191,7 +191,7 @@ static void add_engine(ck_StabilityMap *map, const ck_Engine *engine) {
 
 ck_Status ck_stability_map_create(ck_StabilityMap *map, const ck_Comparison *comparison,
                                   const ck_CompareOptions *options, ck_Error *error) {
-    *map = (ck_StabilityMap){.comparison = comparison, .limits = options->limits};
+    *map = (ck_StabilityMap){.comparison = comparison, .options = options};
     const ck_Reference *reference = &comparison->truth.reference;
     const unsigned foreign = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE;
     if (!reference->is_static || !reference->trajectory.frame_count || (comparison->model.terms & foreign))
@@ -205,6 +205,8 @@ ck_Status ck_stability_map_create(ck_StabilityMap *map, const ck_Comparison *com
     map->cases =
         calloc((size_t)options->engine_count * (CK_STABILITY_RESTS * 2 * (size_t)SHARES + 2), sizeof *map->cases);
     if (!map->cases && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status && options->engine_count == 1 && options->engines[0]->method == CK_METHOD_NONE)
+        status = ck_fail(error, CK_BAD_INPUT, "%s moves nothing; give another --engine", options->engines[0]->name);
     for (int i = 0; i < options->engine_count && !status; i++)
         if (options->engines[i]->method != CK_METHOD_NONE) add_engine(map, options->engines[i]);
     return status;
@@ -338,12 +340,12 @@ static ck_Status probe(Probe *out, const ck_StabilityMap *map, const ck_Stabilit
     if (!status) {
         ck_Model model = stiffen(base, one->stiffness, springs, memory);
         set_up(&model, rest, one->is_undamped, dt, memory + count);
-        ck_Settings wanted = ck_engine_settings(one->engine, base);
+        ck_Settings wanted = ck_comparison_settings(one->engine, base, map->options);
         wanted.substeps = STEPS;
         if (one->iterations) wanted.iterations = one->iterations;
         double field[3];
         ck_model_mean_field(&model, field);
-        status = ck_run_measure(&run, &model, one->engine, &wanted, &map->limits, error);
+        status = ck_run_measure(&run, &model, one->engine, &wanted, &map->options->limits, error);
         if (!status && run.trajectory.frame_count == FRAMES + 1)
             out->class = judge(&run, base->size, ck_length(field), &out->strain, &out->speed);
         else if (!status)

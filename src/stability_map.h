@@ -31,7 +31,7 @@ typedef struct ck_StabilityRest {
 
 typedef struct ck_StabilityMap {
     const ck_Comparison *comparison; // with its truth, outlives this
-    ck_Limits limits;
+    const ck_CompareOptions *options;
     ck_StabilityRest rests[CK_STABILITY_RESTS];
     ck_StabilityCase *cases;
     int case_count;

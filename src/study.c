@@ -139,15 +139,21 @@ ck_Status ck_study_run(const ck_Study *study, const ck_StudyOptions *options, ck
     ck_Status status = ck_journal_open(&journal, options->directory, name, options->question, keep, &job, error);
     int wanted = 0;
     for (int i = 0; i < study->case_count; i++) wanted += !rows[i].is_done && is_mine(options, i);
+    if (!status && wanted && options->runs_nothing)
+        status = ck_fail(error, CK_BAD_INPUT, "%d of %d cases are missing; give all parts", wanted, study->case_count);
     if (!status && wanted) status = run_workers(&job, wanted, error);
     if (!status && board->status) {
         status = board->status;
         if (error) *error = board->error;
     }
-    ck_journal_close(&journal, false);
     // what the workers have added
     memset(rows, 0, sizeof *rows * (size_t)study->case_count);
-    if (!status) status = ck_journal_open(&journal, options->directory, name, options->question, keep, &job, error);
+    if (!status) status = ck_journal_read(&journal, options->question, keep, &job, error);
+    int missing = 0;
+    for (int i = 0; i < study->case_count; i++) missing += !rows[i].is_done && is_mine(options, i);
+    if (!status && missing)
+        status = ck_fail(error, CK_IO, "%s: %d cases were run and are not there; remove the file and start again",
+                         journal.path, missing);
     ck_journal_close(&journal, false);
     ck_shared_free(board, sizeof *board);
     return status;
@@ -161,15 +167,23 @@ void ck_study_forget(const ck_Study *study, const ck_StudyOptions *options) {
     free(path);
 }
 
+typedef struct Copy {
+    ck_Journal all;
+    ck_Status status;
+    ck_Error *error;
+} Copy;
+
 static void copy_row(void *context, const char *key, const ck_JournalRow *row) {
-    ck_journal_add(context, key, row, NULL);
+    Copy *copy = context;
+    if (!copy->status) copy->status = ck_journal_add(&copy->all, key, row, copy->error);
 }
 
 ck_Status ck_study_merge(const char *directory, const char *study, const char *const *parts, int part_count,
                          ck_Error *error) {
     char name[64], question[4096], other[4096];
     name_journal(name, sizeof name, study);
-    ck_Journal all = {.file = -1}, part = {.file = -1};
+    ck_Journal part = {.file = -1};
+    Copy copy = {.all = {.file = -1}, .error = error};
     ck_Status status = ck_journal_question(parts[0], name, question, sizeof question, error);
     for (int i = 1; i < part_count && !status; i++) {
         status = ck_journal_question(parts[i], name, other, sizeof other, error);
@@ -177,11 +191,12 @@ ck_Status ck_study_merge(const char *directory, const char *study, const char *c
             status = ck_fail(error, CK_BAD_INPUT, "%s and %s are not parts of one study: they were asked '%s' and '%s'",
                              parts[0], parts[i], question, other);
     }
-    if (!status) status = ck_journal_open(&all, directory, name, question, NULL, NULL, error);
+    if (!status) status = ck_journal_open(&copy.all, directory, name, question, NULL, NULL, error);
     for (int i = 0; i < part_count && !status; i++) {
-        status = ck_journal_open(&part, parts[i], name, question, copy_row, &all, error);
+        status = ck_journal_open(&part, parts[i], name, question, copy_row, &copy, error);
+        if (!status) status = copy.status;
         ck_journal_close(&part, false);
     }
-    ck_journal_close(&all, false);
+    ck_journal_close(&copy.all, false);
     return status;
 }

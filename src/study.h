@@ -20,6 +20,7 @@ typedef struct ck_StudyOptions {
     int jobs;              // worker processes
     int shard, shards;     // only every shards-th case, from the shard-th, counted from 1
     bool shows_progress;   // on stderr
+    bool runs_nothing;     // every case must be in the journal, or it is an error
 } ck_StudyOptions;
 
 // Runs the cases that the journal does not hold; rows [case_count] get all there are, is_done false for the others.

@@ -8,23 +8,12 @@
 #include <string.h>
 #include <unistd.h>
 
-// What was asked, in words that tell it apart from anything else: the command without what only says where and how
-// fast, the scene's text and the program. Words stand between tabs, as they may hold spaces.
-static void write_question(ck_StudyCommand *command, int argc, char **argv) {
-    static const char *const silent[] = {"--out", "--jobs", "--shard"};
+// What was asked, the scene's text and the program: what tells a journal's cases apart from anything else.
+static void write_question(ck_StudyCommand *command) {
     const ck_Document *document = &command->comparison->scene.document;
-    size_t size = sizeof command->question, used = 0;
-    for (int i = 0; i < argc && used < size; i++) {
-        bool is_silent = false;
-        for (size_t k = 0; k < sizeof silent / sizeof *silent; k++) is_silent |= !strcmp(argv[i], silent[k]);
-        if (is_silent)
-            i++;
-        else
-            used += (size_t)snprintf(command->question + used, size - used, "%s%s", used ? "\t" : "", argv[i]);
-    }
-    if (used < size)
-        snprintf(command->question + used, size - used, "\t(scene %016llx, clothcheck %s)",
-                 (unsigned long long)ck_hash(CK_HASH_START, document->text, document->length), CK_VERSION);
+    snprintf(command->question, sizeof command->question, "%s\t(scene %016llx, clothcheck %s)",
+             command->arguments->question, (unsigned long long)ck_hash(CK_HASH_START, document->text, document->length),
+             CK_VERSION);
 }
 
 static ck_Status find_truth(ck_Comparison *comparison, const ck_Arguments *arguments, ck_Error *error) {
@@ -46,14 +35,11 @@ int ck_study_command(int argc, char **argv, const char *help, unsigned groups, d
     ck_Error error = {0};
     ck_Arguments arguments;
     ck_Comparison comparison = {0};
-    char **given = malloc(sizeof *given * (size_t)argc);
-    if (given) memcpy(given, argv, sizeof *given * (size_t)argc); // getopt moves what it reads
     ck_Status status = ck_arguments_read(&arguments, argc, argv, groups, &error);
     if (!arguments.out) arguments.out = "out";
-    if (arguments.options.limits.seconds == ck_limits_default().seconds) arguments.options.limits.seconds = seconds;
+    if (!arguments.has_time_limit) arguments.options.limits.seconds = seconds;
     if (!status && arguments.scene_count != 1)
         status = ck_fail(&error, CK_BAD_INPUT, "%s takes one SCENE; %d are given", argv[0], arguments.scene_count);
-    if (!status && !given) status = ck_fail(&error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_comparison_load(&comparison, arguments.scenes[0], &error);
     ck_command_catch_signals();
     int failed = status ? 0 : ck_path_make(arguments.out);
@@ -61,20 +47,19 @@ int ck_study_command(int argc, char **argv, const char *help, unsigned groups, d
     if (!status) status = find_truth(&comparison, &arguments, &error);
     if (!status) {
         ck_StudyCommand command = {.arguments = &arguments, .comparison = &comparison};
-        write_question(&command, argc, given);
+        write_question(&command);
         status = run(&command, &error);
     }
     ck_comparison_free(&comparison);
     ck_arguments_free(&arguments);
-    free(given);
     return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
 }
 
 static ck_StudyOptions options_of(const ck_StudyCommand *command, int jobs) {
     const ck_Arguments *arguments = command->arguments;
     int wanted = arguments->jobs ? arguments->jobs : jobs ? jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
-    return (ck_StudyOptions){arguments->out,   command->question, wanted > 0 ? wanted : 1,
-                             arguments->shard, arguments->shards, isatty(STDERR_FILENO)};
+    return (ck_StudyOptions){arguments->out,    command->question,     wanted > 0 ? wanted : 1, arguments->shard,
+                             arguments->shards, isatty(STDERR_FILENO), arguments->runs_nothing};
 }
 
 ck_Status ck_study_command_run(const ck_StudyCommand *command, const ck_Study *study, int jobs, ck_JournalRow **rows,

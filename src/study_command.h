@@ -8,7 +8,7 @@
 typedef struct ck_StudyCommand {
     const ck_Arguments *arguments;
     const ck_Comparison *comparison; // with its truth
-    char question[2048];
+    char question[2400];
 } ck_StudyCommand;
 
 // Reads arguments of one scene, finds its truth, and calls run. Returns the exit status, having told of an error.

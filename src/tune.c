@@ -52,8 +52,6 @@ enum { ERROR, SAG_ERROR, STRETCH_ERROR, CPU, TIME_STEP };
 
 static ck_TunePoint point_at(const Search *search, const double *x) {
     ck_TunePoint point = {.settings = search->automatic, .stiffness = 1};
-    point.settings.compliance = 0;
-    point.settings.klst = 0;
     for (int i = 0; i < search->range_count; i++) {
         const Range *range = &search->ranges[i];
         double value = range->low + x[i] * (range->high - range->low);
@@ -147,7 +145,8 @@ static double value_of(const Search *search, const ck_TunePoint *point) {
     double error = point->trial.error, tolerance = search->options->tolerance;
     if (point->trial.status != CK_RUN_OK || !(error >= 0)) return FAILED;
     if (isnan(tolerance)) return log(fmax(error, 1e-16));
-    return log(point->work) + PENALTY * fmax(0, log(error / tolerance));
+    // capped, so that whatever runs is better than what does not
+    return log(point->work) + fmin(0.5 * FAILED, PENALTY * fmax(0, log(error / tolerance)));
 }
 
 static void add_row(ck_Csv *csv, const ck_Model *model, const ck_TuneOptions *options, const char *role,
@@ -238,6 +237,11 @@ static void place(const Search *search, const ck_TunePoint *point, double *x) {
         double value = range->variable == CK_TUNE_STIFFNESS
                            ? point->stiffness
                            : ck_setting_get(&point->settings, (ck_Setting)range->variable);
+        // what has no value yet starts in the middle, which is theory's
+        if (!(value > 0)) {
+            x[i] = 0.5;
+            continue;
+        }
         if (range->variable != CK_SET_RELAXATION) value = log2(value);
         x[i] = fmin(1, fmax(0, (value - range->low) / (range->high - range->low)));
     }
@@ -266,6 +270,9 @@ static ck_Status validate(const Search *search, const ck_Tuning *tuning, const c
     if (!status) status = ck_truth_create(&other.truth, &other.model, options->cache, error);
     if (!status && options->like)
         status = ck_run_measure(&like, &other.model, options->like, &(ck_Settings){0}, &options->limits, error);
+    if (!status && options->like && like.trajectory.frame_count != other.model.frame_count + 1)
+        status = ck_fail(error, CK_REFUSED, "%s: %s has no path to come close to: %s", path, options->like->name,
+                         like.reason);
     if (!status) {
         ck_TunePoint point = tuning->best;
         point.settings.substeps = (uint32_t)fmax(1, round(other.model.step / tuning->best.trial.time_step));
@@ -290,14 +297,17 @@ static ck_Status prepare(Search *search, ck_Error *error) {
     const ck_TuneOptions *options = search->options;
     const ck_Model *model = &search->comparison->model;
     const ck_Reference *reference = &search->comparison->truth.reference;
-    ck_Settings wanted = ck_engine_settings(options->engine, model);
     void *state;
     if (!options->like && (!reference->trajectory.frame_count || reference->is_invariant))
         return ck_fail(error, CK_BAD_INPUT, "%s: its truth has no positions to come close to; give --like ENGINE",
                        search->comparison->path);
+    if ((options->varies[CK_SET_COMPLIANCE] && options->engine->method != CK_METHOD_XPBD) ||
+        (options->varies[CK_SET_KLST] && options->engine->method != CK_METHOD_BULLET_PBD))
+        return ck_fail(error, CK_BAD_INPUT, "--vary: compliance is native-xpbd's, klst bullet-pbd's; %s has neither",
+                       options->engine->name);
     if (model->terms & ~options->engine->terms)
         return ck_fail(error, CK_REFUSED, "%s does not model all that %s has", options->engine->name, model->name);
-    ck_Status status = options->engine->create(&state, model, &wanted, &search->automatic, NULL, error);
+    ck_Status status = options->engine->create(&state, model, &options->given, &search->automatic, NULL, error);
     if (status) return status;
     options->engine->destroy(state);
     find_ranges(search);

@@ -21,6 +21,7 @@ typedef struct ck_TuneOptions {
     char *const *validate;          // scene paths to try the result on
     int validate_count;
     const char *directory, *question, *cache; // of the journal and the truths of the scenes it is tried on
+    ck_Settings given;                        // what the user sets of the engine
     ck_Limits limits;
     void (*progress)(int evaluation, double best); // may be NULL
 } ck_TuneOptions;

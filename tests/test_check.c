@@ -20,8 +20,8 @@ static void make_baseline(ck_Baseline *baseline, const ck_CheckCase *one, const 
 }
 
 static void measure(ck_JournalRow *row, const ck_CheckCase *one, bool is_update) {
-    ck_Check check = {
-        .cases = (ck_CheckCase *)one, .case_count = 1, .limits = ck_limits_default(), .is_update = is_update};
+    const ck_CompareOptions options = ck_compare_options_default();
+    ck_Check check = {.cases = (ck_CheckCase *)one, .case_count = 1, .options = &options, .is_update = is_update};
     ck_Study study = ck_check_study(&check);
     *row = (ck_JournalRow){.is_done = true};
     for (int i = 0; i < CK_JOURNAL_VALUES; i++) row->values[i] = NAN;
