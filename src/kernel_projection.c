@@ -31,7 +31,7 @@ struct ck_ProjectedCloth {
     Compliant compliant[CK_SPRING_KINDS];
     int terms;
     long sweeps; // of this call
-    double *x[3], *start[3], *v[3], *before[3], *is_free, *paired;
+    double *x[3], *start[3], *v[3], *before[3], *is_free, *paired, *all;
     double *multiplier[COLOURS]; // NULL: one sweep starts from 0 and needs none
     bool *is_held;               // [rows + 1] a pin in the row or the one below
     double *state, *pairs, *multipliers;
@@ -42,7 +42,7 @@ enum { DAMPED = 1, REPEATED = 2, BARS = 4, HELD = 8 };
 typedef struct Ends {
     long a, b;
     ck_SpringKind kind;
-    const double *paired; // NULL: all lanes
+    const double *paired; // 1 where there is a spring, else 0
     double *multiplier;
 } Ends;
 
@@ -82,7 +82,7 @@ CK_INLINE void project_bars(const ck_ProjectedCloth *cloth, const Ends *ends, co
         ck_Lanes share = quarter * (squared - squared_rest);
         if (terms & HELD) share += share - share * both_alike(cloth, &ends[i]);
         scale[i] = ck_lanes_where(along > (ck_Lanes){0}, share / along);
-        if (ends[i].paired) scale[i] *= ck_lanes_load(ends[i].paired);
+        scale[i] *= ck_lanes_load(ends[i].paired);
     }
     for (int i = 0; i < count; i++) move(cloth, &ends[i], ck_lanes3_scale(scale[i], old[i]), terms);
 }
@@ -108,7 +108,7 @@ CK_INLINE void project_springs(const ck_ProjectedCloth *cloth, const Ends *ends,
         if (terms & HELD)
             share = compliant->one_free + (compliant->both_free - compliant->one_free) * both_alike(cloth, &ends[i]);
         change[i] = ck_lanes_where(squared[i] > (ck_Lanes){0}, share * residual);
-        if (ends[i].paired) change[i] *= ck_lanes_load(ends[i].paired);
+        change[i] *= ck_lanes_load(ends[i].paired);
     }
     for (int i = 0; i < count; i++) {
         if (terms & REPEATED) ck_lanes_store(ends[i].multiplier, ck_lanes_load(ends[i].multiplier) - change[i]);
@@ -122,7 +122,7 @@ CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, Colour colour, int row, i
     double *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + at + here : NULL;
     const double *paired = cloth->paired + here;
     switch (colour) {
-    case DOWN: return (Ends){at + here, below + here, CK_STRUCTURAL, NULL, multiplier};
+    case DOWN: return (Ends){at + here, below + here, CK_STRUCTURAL, cloth->all + here, multiplier};
     case DOWN_RIGHT: return (Ends){at + here, below + right, CK_SHEAR, paired, multiplier};
     case DOWN_LEFT: return (Ends){at + right, below + here, CK_SHEAR, paired, multiplier};
     default: return (Ends){at + here, at + right, CK_STRUCTURAL, paired, multiplier};
@@ -205,8 +205,9 @@ CK_INLINE void finish_row(const ck_ProjectedCloth *cloth, int row) {
                            rate * (ck_lanes_load(cloth->x[axis] + i) - ck_lanes_load(cloth->start[axis] + i)));
 }
 
-// Colour by colour, so that each sweep in flight has the others' work to wait with. A substep's first sweep finds
-// the row below predicted; its last leaves the row done.
+// One loop for all colours: one for each would be six times the code, and no faster. Colour by colour, so that each
+// sweep in flight has the others' work to wait with. A substep's first sweep finds the row below predicted; its last
+// leaves the row done.
 CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, const int terms) {
     for (int i = 0; i < wave->sweeps; i++) {
         long sweep = wave->first_sweep + i;
@@ -217,14 +218,9 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, con
         if (row + 1 < cloth->rows.rows) predict_row(cloth, row + 1, is_last);
     }
     const int together = cloth->rows.span > WIDE ? 1 : wave->sweeps;
-    for (int first = 0; first < wave->sweeps; first += together) {
-        project_colour(cloth, wave, first, first + together, ALONG_EVEN, terms);
-        project_colour(cloth, wave, first, first + together, ALONG_ODD, terms);
-        project_colour(cloth, wave, first, first + together, ALONG_LAST, terms);
-        project_colour(cloth, wave, first, first + together, DOWN, terms);
-        project_colour(cloth, wave, first, first + together, DOWN_RIGHT, terms);
-        project_colour(cloth, wave, first, first + together, DOWN_LEFT, terms);
-    }
+    for (int first = 0; first < wave->sweeps; first += together)
+        for (int colour = 0; colour < COLOURS; colour++)
+            project_colour(cloth, wave, first, first + together, colour, terms);
     for (int i = 0; i < wave->sweeps; i++) {
         int row = wave->wave - LAG * i;
         if ((wave->first_sweep + i + 1) % cloth->rule.iterations == 0 && row >= 0 && row < cloth->rows.rows)
@@ -302,6 +298,7 @@ static void place_arrays(ck_ProjectedCloth *cloth) {
         for (size_t axis = 0; axis < 3; axis++) groups[group][axis] = cloth->state + size * (3 * group + axis);
     cloth->is_free = cloth->state + size * 12;
     cloth->paired = cloth->pairs;
+    cloth->all = cloth->pairs + cloth->rows.stride;
     // the colours along a row have the row's vectors between them
     for (int colour = 0; colour < COLOURS && cloth->multipliers; colour++)
         cloth->multiplier[colour] = cloth->multipliers + size * (size_t)(colour > ALONG_LAST ? colour - ALONG_LAST : 0);
@@ -329,7 +326,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Model *model, c
     set_rule(cloth, springs, rule);
     const ck_Rows row = {.size = (size_t)cloth->rows.stride};
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
-    cloth->pairs = ck_rows_allocate(&row, 1);
+    cloth->pairs = ck_rows_allocate(&row, 2);
     cloth->multipliers = cloth->terms & REPEATED ? ck_rows_allocate(&cloth->rows, 4) : NULL;
     cloth->is_held = calloc((size_t)cloth->rows.rows, sizeof *cloth->is_held);
     if (!cloth->state || !cloth->pairs || !cloth->is_held || ((cloth->terms & REPEATED) && !cloth->multipliers)) {
@@ -339,6 +336,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Model *model, c
     place_arrays(cloth);
     mark_free(cloth, inverse_mass);
     ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
+    ck_rows_mark_paired(&cloth->rows, 0, cloth->all);
     ck_rows_load(&cloth->rows, cloth->x, position);
     ck_rows_load(&cloth->rows, cloth->v, velocity);
     ck_rows_load(&cloth->rows, cloth->before, before);
