@@ -205,9 +205,9 @@ CK_INLINE void finish_row(const ck_ProjectedCloth *cloth, int row) {
                            rate * (ck_lanes_load(cloth->x[axis] + i) - ck_lanes_load(cloth->start[axis] + i)));
 }
 
-// One loop for all colours: one for each would be six times the code, and no faster. Colour by colour, so that each
-// sweep in flight has the others' work to wait with. A substep's first sweep finds the row below predicted; its last
-// leaves the row done.
+// One loop for all colours: one for each takes a sixth less time and seven times as long to compile. Colour by colour,
+// so that each sweep in flight has the others' work to wait with. A substep's first sweep finds the row below
+// predicted; its last leaves the row done.
 CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, const int terms) {
     for (int i = 0; i < wave->sweeps; i++) {
         long sweep = wave->first_sweep + i;
