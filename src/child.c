@@ -17,7 +17,7 @@
 volatile sig_atomic_t ck_child_interrupted;
 
 ck_Status ck_child_check(ck_Error *error) {
-    return ck_child_interrupted ? ck_fail(error, CK_IO, "interrupted; nothing was written") : CK_OK;
+    return ck_child_interrupted ? ck_fail(error, CK_IO, "interrupted; no CSV was written") : CK_OK;
 }
 
 ck_Limits ck_limits_default(void) {
