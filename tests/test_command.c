@@ -1,49 +1,14 @@
 // The program as a user meets it: exit statuses, what it writes, and that two runs write the same.
 #include "fixture.h"
+#include "fixture_program.h"
 
 #include <glob.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char directory[] = "/tmp/clothcheck-command-XXXXXX";
-
-static int make_directory(void **state) {
-    (void)state;
-    return mkdtemp(directory) ? 0 : -1;
-}
-
-static int remove_directory(void **state) {
-    (void)state;
-    char command[100];
-    snprintf(command, sizeof command, "rm -rf %s", directory);
-    return system(command);
-}
-
-// Runs the program in the source tree and returns its exit status; both streams go to directory/output.
-static int run(const char *arguments) {
-    char command[1000];
-    snprintf(command, sizeof command, "cd %s/.. && %s %s >%s/output 2>&1", SCENE_DIRECTORY, PROGRAM, arguments,
-             directory);
-    int status = system(command);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
-}
-
-static char *read_text(const char *name) {
-    char path[200];
-    snprintf(path, sizeof path, "%s/%s", directory, name);
-    FILE *file = fopen(path, "r");
-    if (!file) return NULL;
-    char *text = calloc(1, 1 << 22);
-    size_t length = fread(text, 1, (1 << 22) - 1, file);
-    text[length] = 0;
-    fclose(file);
-    return text;
-}
-
 static void assert_output(const char *wanted) {
-    char *output = read_text("output");
+    char *output = fixture_read("output");
     if (!strstr(output, wanted)) fail_msg("wanted '%s' in: %s", wanted, output);
     free(output);
 }
@@ -83,7 +48,7 @@ static void test_usage(void **state) {
         {"run oscillator --engine null --repeats 0", 0, "moves nothing"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        int status = run(cases[i].arguments);
+        int status = fixture_program(cases[i].arguments);
         if (status != cases[i].status) fail_msg("'%s' ended with %d", cases[i].arguments, status);
         if (i != sizeof cases / sizeof *cases - 1) assert_output(cases[i].output);
     }
@@ -94,9 +59,9 @@ static void test_bad_input_writes_nothing(void **state) {
     (void)state;
     char *bad = fixture_file("name: bad\nrope: {particles: 2, spacing: 1, mass: 0}\ntime: {duration: 1, step: 0.1}\n"),
          arguments[300], out[100];
-    snprintf(out, sizeof out, "%s/none", directory);
+    snprintf(out, sizeof out, "%s/none", fixture_directory);
     snprintf(arguments, sizeof arguments, "compare oscillator %s --out %s", bad, out);
-    assert_int_equal(run(arguments), 2);
+    assert_int_equal(fixture_program(arguments), 2);
     assert_output(":2:40: rope.mass is 0; it must be a number above 0");
     assert_int_not_equal(access(out, F_OK), 0);
     unlink(bad);
@@ -105,13 +70,13 @@ static void test_bad_input_writes_nothing(void **state) {
 
 static void test_two_scenes_of_one_name(void **state) {
     (void)state;
-    assert_int_equal(run("compare oscillator scenes/oscillator.yaml"), 2);
+    assert_int_equal(fixture_program("compare oscillator scenes/oscillator.yaml"), 2);
     assert_output("both named oscillator");
 }
 
 static void test_unwritable_output(void **state) {
     (void)state;
-    assert_int_equal(run("compare oscillator --repeats 0 --out /proc/none"), 1);
+    assert_int_equal(fixture_program("compare oscillator --repeats 0 --out /proc/none"), 1);
     assert_output("/proc/none: ");
 }
 
@@ -134,15 +99,15 @@ static void test_comparison_repeats(void **state) {
         char arguments[300];
         snprintf(arguments, sizeof arguments,
                  "compare free_fall oscillator rope_hanging --repeats %d --seed %d --out %s/%d", round, round + 1,
-                 directory, round);
-        assert_int_equal(run(arguments), 0);
+                 fixture_directory, round);
+        assert_int_equal(fixture_program(arguments), 0);
     }
     for (int i = 0; i < 6; i++) {
         char name[60];
         snprintf(name, sizeof name, "0/%s", files[i]);
-        char *first = read_text(name);
+        char *first = fixture_read(name);
         snprintf(name, sizeof name, "1/%s", files[i]);
-        char *second = read_text(name);
+        char *second = fixture_read(name);
         assert_non_null(first);
         assert_non_null(second);
         if (strncmp(first, headers[i], strlen(headers[i]))) fail_msg("%s begins with %.200s", files[i], first);
@@ -152,7 +117,7 @@ static void test_comparison_repeats(void **state) {
     }
     char pattern[100];
     glob_t left;
-    snprintf(pattern, sizeof pattern, "%s/0/*.part", directory);
+    snprintf(pattern, sizeof pattern, "%s/0/*.part", fixture_directory);
     assert_int_equal(glob(pattern, 0, NULL, &left), GLOB_NOMATCH);
 }
 
@@ -164,11 +129,11 @@ static void test_interrupt(void **state) {
     snprintf(command, sizeof command,
              "cd %s/.. && timeout -s INT 2 %s compare oscillator cloth_two_corners --engine ode-direct --out %s/cut "
              ">/dev/null 2>&1",
-             SCENE_DIRECTORY, PROGRAM, directory);
+             SCENE_DIRECTORY, PROGRAM, fixture_directory);
     int status = system(command);
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 124); // timeout's own word for having sent the signal
-    snprintf(pattern, sizeof pattern, "%s/cut/*.*", directory);
+    snprintf(pattern, sizeof pattern, "%s/cut/*.*", fixture_directory);
     assert_int_equal(glob(pattern, 0, NULL, &left), GLOB_NOMATCH);
 }
 
@@ -190,5 +155,5 @@ int main(void) {
         cmocka_unit_test(test_interrupt),
         cmocka_unit_test(test_full_disk),
     };
-    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+    return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

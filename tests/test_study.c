@@ -1,5 +1,6 @@
 // Studies through the program: killed and resumed, in parts and merged; and what they find where it is known.
 #include "fixture.h"
+#include "fixture_program.h"
 
 #include "random.h"
 #include "stability.h"
@@ -10,39 +11,29 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char directory[] = "/tmp/clothcheck-study-XXXXXX";
-
-// Starts the program; its output goes to directory/output. %s in arguments is the directory.
-static pid_t start(const char *arguments) {
-    char command[1000], filled[800];
-    snprintf(filled, sizeof filled, arguments, directory, directory, directory, directory, directory);
-    snprintf(command, sizeof command, "exec " PROGRAM " %s >%s/output 2>&1", filled, directory);
-    pid_t child = fork();
-    if (child == 0) {
-        if (chdir(SCENE_DIRECTORY "/..")) _exit(9);
-        execl("/bin/sh", "sh", "-c", command, NULL);
-        _exit(9);
-    }
-    assert_true(child > 0);
-    return child;
+// %s in arguments is the fixture_directory, up to five times.
+static void fill(char *filled, size_t size, const char *arguments) {
+    const char *at = fixture_directory;
+    snprintf(filled, size, arguments, at, at, at, at, at);
 }
 
-static char *read_text(const char *name) {
-    char path[200];
-    snprintf(path, sizeof path, "%s/%s", directory, name);
-    FILE *file = fopen(path, "r");
-    if (!file) fail_msg("%s is not there", path);
-    char *text = calloc(1, 1 << 22);
-    size_t length = fread(text, 1, (1 << 22) - 1, file);
-    text[length] = 0;
-    fclose(file);
-    return text;
+static pid_t start(const char *arguments) {
+    char filled[800];
+    fill(filled, sizeof filled, arguments);
+    return fixture_start(filled);
 }
 
 static void finish(const char *arguments, int wanted) {
-    int how;
-    waitpid(start(arguments), &how, 0);
-    if (!WIFEXITED(how) || WEXITSTATUS(how) != wanted) fail_msg("%s: %s", arguments, read_text("output"));
+    char filled[800];
+    fill(filled, sizeof filled, arguments);
+    int status = fixture_program(filled);
+    if (status != wanted) fail_msg("%s: exit status %d, %s", filled, status, fixture_read("output"));
+}
+
+static char *read_text(const char *name) {
+    char *text = fixture_read(name);
+    if (!text) fail_msg("%s is not there", name);
+    return text;
 }
 
 static void assert_same(const char *one, const char *other) {
@@ -56,7 +47,7 @@ static void assert_same(const char *one, const char *other) {
 static long size_of(const char *name) {
     char path[200];
     struct stat about;
-    snprintf(path, sizeof path, "%s/%s", directory, name);
+    snprintf(path, sizeof path, "%s/%s", fixture_directory, name);
     return stat(path, &about) ? -1 : (long)about.st_size;
 }
 
@@ -96,6 +87,21 @@ static void test_shards(void **state) {
     finish("merge %s/none %s/1 %s/other", 2);
     finish("merge %s/none %s/empty", 2);
     finish("stability rope_hanging --shard 5/4", 2);
+}
+
+// A directory is one study's at a time, and what is unfinished there is not thrown away for another.
+static void test_two_at_once(void **state) {
+    (void)state;
+    pid_t busy = start("stability rope_hanging --jobs 1 --out %s/busy");
+    usleep(500000);
+    finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);
+    kill(busy, SIGKILL);
+    waitpid(busy, NULL, 0);
+    long size = size_of("busy/stability.journal");
+    assert_true(size > 0);
+    finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);
+    assert_true(size_of("busy/stability.journal") == size);
+    finish("stability rope_hanging --jobs 2 --out %s/busy", 0);
 }
 
 // The growth of one damped mode over many steps of velocity Verlet with predicted velocity, or of symplectic Euler with
@@ -189,7 +195,7 @@ static void test_tune(void **state) {
 static void test_needs(void **state) {
     (void)state;
     char path[200], arguments[400], row[1000];
-    snprintf(path, sizeof path, "%s/idle.yaml", directory);
+    snprintf(path, sizeof path, "%s/idle.yaml", fixture_directory);
     FILE *file = fopen(path, "w");
     fputs(
         "name: idle\ncloth: {rows: 8, columns: 8, spacing: 0.1, mass: 0.2, down: [0, 0, 1]}\nsprings: {stiffness: 50, "
@@ -210,23 +216,11 @@ static void test_needs(void **state) {
     free(output);
 }
 
-static int make_directory(void **state) {
-    (void)state;
-    return mkdtemp(directory) ? 0 : -1;
-}
-
-static int remove_directory(void **state) {
-    (void)state;
-    char command[100];
-    snprintf(command, sizeof command, "rm -r %s", directory);
-    return system(command);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),    cmocka_unit_test(test_kill), cmocka_unit_test(test_shards),
-        cmocka_unit_test(test_critical),  cmocka_unit_test(test_tune), cmocka_unit_test(test_needs),
-        cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),      cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),  cmocka_unit_test(test_tune),
+        cmocka_unit_test(test_needs),       cmocka_unit_test(test_precision),
     };
-    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+    return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
