@@ -2,6 +2,7 @@
 #include "study_command.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 // The engine that is asked for, else the first that models all there is.
 static const ck_Engine *choose_engine(const ck_StudyCommand *command) {
@@ -28,7 +29,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) ck_study_command_done(command, &study, "needs.csv");
     ck_csv_discard(&csv);
-    ck_study_command_free(rows);
+    free(rows);
     ck_needs_free(&needs);
     return status;
 }

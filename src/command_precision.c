@@ -1,6 +1,8 @@
 #include "precision.h"
 #include "study_command.h"
 
+#include <stdlib.h>
+
 static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     ck_Precision precision;
     ck_Csv csv = {0}, summary = {0};
@@ -19,7 +21,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     if (!status) ck_study_command_done(command, &study, "precision.csv, precision_summary.csv");
     ck_csv_discard(&csv);
     ck_csv_discard(&summary);
-    ck_study_command_free(rows);
+    free(rows);
     ck_precision_free(&precision);
     return status;
 }

@@ -1,6 +1,8 @@
 #include "stability_map.h"
 #include "study_command.h"
 
+#include <stdlib.h>
+
 static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     ck_StabilityMap map;
     ck_Csv csv = {0};
@@ -13,7 +15,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) ck_study_command_done(command, &study, "stability.csv");
     ck_csv_discard(&csv);
-    ck_study_command_free(rows);
+    free(rows);
     ck_stability_map_free(&map);
     return status;
 }

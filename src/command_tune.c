@@ -1,3 +1,4 @@
+#include "path.h"
 #include "study_command.h"
 #include "tune.h"
 
@@ -5,8 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-#include "path.h"
 
 static void show(int evaluation, double best) {
     fprintf(stderr, "\r\033[Ktune: %d settings, least error so far %.3g", evaluation, best);

@@ -236,6 +236,14 @@ void ck_model_free(ck_Model *model) {
     *model = (ck_Model){0};
 }
 
+void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor) {
+    for (int i = 0; i < copy->spring_count; i++) {
+        springs[i] = copy->springs[i];
+        springs[i].stiffness *= factor;
+    }
+    copy->springs = springs;
+}
+
 bool ck_model_is_held(const ck_Model *model, int particle) {
     if (!model->pinned[particle]) return false;
     return !is_released_before(model, particle,

@@ -98,6 +98,9 @@ ck_Status ck_model_build(ck_Model *model, const struct ck_Scene *scene, ck_Error
 // Accepts a zeroed model.
 void ck_model_free(ck_Model *model);
 
+// Gives a copy of a model springs of its own, [spring_count], of factor times the stiffness.
+void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor);
+
 // True for a particle that is pinned from start to end.
 bool ck_model_is_held(const ck_Model *model, int particle);
 

@@ -43,6 +43,10 @@ static bool relax(ck_Native *native) {
     return true;
 }
 
+static void substep(ck_Native *native) {
+    ck_leapfrog_substep(native, relax);
+}
+
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps,
                           .iterations = wanted->iterations ? wanted->iterations : ck_stability_sweeps(model),
@@ -69,12 +73,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     ck_Native *native;
     ck_Status status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
-    status = lay_in_rows(native, error);
-    if (status)
-        ck_native_destroy(native);
-    else
-        *state = native;
-    return status;
+    return ck_native_hand_out(state, native, lay_in_rows(native, error));
 }
 
 static void release(void *state, int particle) {
@@ -84,12 +83,7 @@ static void release(void *state, int particle) {
 }
 
 static ck_StepResult step(void *state) {
-    ck_Native *native = state;
-    if (!ck_native_step_rows(native)) {
-        ck_native_start_frame(native);
-        for (uint32_t i = 0; i < native->substeps; i++) ck_leapfrog_substep(native, relax);
-    }
-    return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+    return ck_native_step_frame(state, substep);
 }
 
 const ck_Engine ck_native_bars = {

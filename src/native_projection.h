@@ -9,7 +9,10 @@
 // native then goes on with its list of springs.
 ck_Status ck_native_project_rows(ck_Native *native, const ck_ProjectionRule *rule, ck_Error *error);
 
-// A frame in rows; false without them.
-bool ck_native_step_rows(ck_Native *native);
+// What is left of an engine's create once native is laid out, or not for that status: hands it out or frees it.
+ck_Status ck_native_hand_out(void **state, ck_Native *native, ck_Status status);
+
+// A frame in rows, or where there are none by so many substeps over the list of springs.
+ck_StepResult ck_native_step_frame(ck_Native *native, void (*substep)(ck_Native *native));
 
 #endif

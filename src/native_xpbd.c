@@ -140,12 +140,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
         native->compliance[i] = compliance_of(spring, used) / (native->dt * native->dt);
         native->gamma[i] = spring->damping * compliance_of(spring, used) / native->dt;
     }
-    status = lay_in_rows(native, error);
-    if (status)
-        ck_native_destroy(native);
-    else
-        *state = native;
-    return status;
+    return ck_native_hand_out(state, native, lay_in_rows(native, error));
 }
 
 static void release(void *state, int particle) {
@@ -155,12 +150,7 @@ static void release(void *state, int particle) {
 }
 
 static ck_StepResult step(void *state) {
-    ck_Native *native = state;
-    if (!ck_native_step_rows(native)) {
-        ck_native_start_frame(native);
-        for (uint32_t i = 0; i < native->substeps; i++) substep(native);
-    }
-    return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+    return ck_native_step_frame(state, substep);
 }
 
 const ck_Engine ck_native_xpbd = {

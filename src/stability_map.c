@@ -116,18 +116,6 @@ static void find_frequency(ck_StabilityRest *rest, const ck_Model *model, double
     rest->damping = damping_of_motion(model, position, d);
 }
 
-// A copy of the scene's model at another stiffness; its springs and velocity are the caller's.
-static ck_Model stiffen(const ck_Model *model, double stiffness, ck_Spring *springs, double *velocity) {
-    ck_Model copy = *model;
-    copy.springs = springs;
-    copy.velocity = velocity;
-    for (int i = 0; i < model->spring_count; i++) {
-        springs[i] = model->springs[i];
-        springs[i].stiffness *= stiffness;
-    }
-    return copy;
-}
-
 static void measure_rest(ck_StabilityRest *rest, const ck_Model *model, double *memory) {
     find_frequency(rest, model, memory);
     rest->transverse = INFINITY;
@@ -151,7 +139,8 @@ static ck_Status find_rest(ck_StabilityRest *rest, const ck_StabilityMap *map, d
     double *memory = calloc(3 * count, sizeof *memory);
     ck_Status status = rest->position && springs && memory ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) {
-        const ck_Model model = stiffen(base, stiffness, springs, memory);
+        ck_Model model = *base;
+        ck_model_scale_stiffness(&model, springs, stiffness);
         ck_Equilibrium equilibrium = {0};
         status = ck_equilibrium_solve(&equilibrium, &model,
                                       ck_trajectory_position(&comparison->truth.reference.trajectory, 0), error);
@@ -338,7 +327,9 @@ static ck_Status probe(Probe *out, const ck_StabilityMap *map, const ck_Stabilit
     ck_Status status = springs && memory ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     *out = (Probe){.class = ABORTED, .strain = NAN, .speed = NAN};
     if (!status) {
-        ck_Model model = stiffen(base, one->stiffness, springs, memory);
+        ck_Model model = *base;
+        ck_model_scale_stiffness(&model, springs, one->stiffness);
+        model.velocity = memory;
         set_up(&model, rest, one->is_undamped, dt, memory + count);
         ck_Settings wanted = ck_comparison_settings(one->engine, base, map->options);
         wanted.substeps = STEPS;

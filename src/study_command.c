@@ -70,10 +70,6 @@ ck_Status ck_study_command_run(const ck_StudyCommand *command, const ck_Study *s
     return ck_study_run(study, &options, *rows, error);
 }
 
-void ck_study_command_free(ck_JournalRow *rows) {
-    free(rows);
-}
-
 void ck_study_command_done(const ck_StudyCommand *command, const ck_Study *study, const char *files) {
     const ck_StudyOptions options = options_of(command, 1);
     if (options.shards <= 1) ck_study_forget(study, &options);

@@ -16,11 +16,10 @@ typedef struct ck_StudyCommand {
 int ck_study_command(int argc, char **argv, const char *help, unsigned groups, double seconds,
                      ck_Status (*run)(const ck_StudyCommand *command, ck_Error *error));
 
-// Runs a study's cases; *rows [case_count] is the caller's to free with ck_study_command_free.
+// Runs a study's cases; *rows [case_count] is the caller's to free.
 //   jobs  where the user says nothing; 0: as many as there are cores
 ck_Status ck_study_command_run(const ck_StudyCommand *command, const ck_Study *study, int jobs, ck_JournalRow **rows,
                                ck_Error *error);
-void ck_study_command_free(ck_JournalRow *rows);
 
 // Once the CSVs are written: takes the journal away, but that of a part, and says where they are.
 void ck_study_command_done(const ck_StudyCommand *command, const ck_Study *study, const char *files);

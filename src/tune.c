@@ -1,7 +1,5 @@
 #include "tune.h"
 
-#include "study.h"
-
 #include <math.h>
 #include <nlopt.h>
 #include <stdio.h>
@@ -67,28 +65,17 @@ static ck_TunePoint point_at(const Search *search, const double *x) {
     return point;
 }
 
-// Springs of another stiffness in a copy of the model; they are the caller's to free.
-static ck_Status stiffen(ck_Model *model, double stiffness, ck_Error *error) {
-    ck_Spring *springs = malloc(sizeof *springs * (size_t)model->spring_count + 1);
-    if (!springs) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    for (int i = 0; i < model->spring_count; i++) {
-        springs[i] = model->springs[i];
-        springs[i].stiffness *= stiffness;
-    }
-    model->springs = springs;
-    return CK_OK;
-}
-
 // The errors are measured on the scene as it is, whatever stiffness the engine was given.
 static ck_Status try_on(ck_TunePoint *point, const ck_Comparison *comparison, const ck_Run *like,
                         const ck_TuneOptions *options, ck_Error *error) {
     ck_Model model = comparison->model;
-    ck_Status status = stiffen(&model, point->stiffness, error);
-    if (status) return status;
+    ck_Spring *springs = malloc(sizeof *springs * (size_t)model.spring_count + 1);
+    if (!springs) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_model_scale_stiffness(&model, springs, point->stiffness);
     const ck_Trajectory *against = like ? &like->trajectory : NULL;
-    status = ck_trial_run(&point->trial, &model, &comparison->truth, against, options->engine, &point->settings, 0,
-                          &options->limits, error);
-    free(model.springs);
+    ck_Status status = ck_trial_run(&point->trial, &model, &comparison->truth, against, options->engine,
+                                    &point->settings, 0, &options->limits, error);
+    free(springs);
     return status;
 }
 
