@@ -27,9 +27,6 @@
 #define MOST_SWEEPS 4096
 #define STRAIN 0.04
 
-const char *const ck_bench_columns[] = {"body", "particles", "springs", "engine", "setup",  "metric",
-                                        "unit", "value",     "low",     "high",   "reason", NULL};
-
 typedef struct Body {
     const char *name;
     uint32_t rows, columns; // columns 1: a rope

@@ -5,8 +5,6 @@
 #include "csv_file.h"
 #include "status.h"
 
-extern const char *const ck_bench_columns[];
-
 typedef struct ck_BenchOptions {
     int rounds;    // interleaved repeats of every engine (usually 7)
     double budget; // CPU seconds that one repeat may take; what takes longer is left out with its reason

@@ -1,9 +1,9 @@
 #include "check.h"
 
+#include "csv_table.h"
 #include "random.h"
 
 #include <assert.h>
-#include <csv.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,94 +11,31 @@
 #include <string.h>
 
 #define NUDGE 1e-12
-#define FIELDS 6
-
-const char *const ck_baseline_columns[] = {"scene", "engine", "status", "metric", "value", "band", NULL};
 
 // Where a study's row holds what; there is room for as many metrics.
 #define MOST_METRICS ((CK_JOURNAL_VALUES - 1) / 2)
 enum { CPU, VALUES, BANDS = VALUES + MOST_METRICS };
 
-typedef struct Reader {
-    ck_Baseline *baseline;
-    const char *path;
-    char fields[FIELDS][64];
-    int field, line;
-    ck_Status status;
-    ck_Error *error;
-} Reader;
-
-static void take_field(void *text, size_t length, void *context) {
-    Reader *reader = context;
-    if (reader->field < FIELDS)
-        snprintf(reader->fields[reader->field], sizeof reader->fields[0], "%.*s", (int)length, (char *)text);
-    reader->field++;
-}
-
-// NaN for an empty field; false where it is no number.
-static bool read_number(double *number, const char *text) {
-    char *end;
-    *number = NAN;
-    if (!*text) return true;
-    *number = strtod(text, &end);
-    return end != text && !*end;
-}
-
-static void end_row(int end, void *context) {
-    (void)end;
-    Reader *reader = context;
-    ck_Baseline *baseline = reader->baseline;
-    int fields = reader->field;
-    reader->field = 0;
-    reader->line++;
-    if (reader->status) return;
-    if (fields != FIELDS) {
-        reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: %d fields where a baseline has %d", reader->path,
-                                 reader->line, fields, FIELDS);
-        return;
-    }
-    for (int i = 0; i < FIELDS && reader->line == 1 && !reader->status; i++)
-        if (strcmp(reader->fields[i], ck_baseline_columns[i]))
-            reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:1: column %d is %s where a baseline has %s",
-                                     reader->path, i + 1, reader->fields[i], ck_baseline_columns[i]);
-    if (reader->line == 1) return;
-    ck_BaselineRow *rows = realloc(baseline->rows, sizeof *rows * (size_t)(baseline->count + 1));
-    if (!rows) {
-        reader->status = ck_fail(reader->error, CK_NO_MEMORY, "out of memory");
-        return;
-    }
-    baseline->rows = rows;
-    ck_BaselineRow *row = &rows[baseline->count++];
-    *row = (ck_BaselineRow){0};
-    snprintf(row->scene, sizeof row->scene, "%s", reader->fields[0]);
-    snprintf(row->engine, sizeof row->engine, "%s", reader->fields[1]);
-    snprintf(row->status, sizeof row->status, "%.31s", reader->fields[2]);
-    snprintf(row->metric, sizeof row->metric, "%s", reader->fields[3]);
-    if (!read_number(&row->value, reader->fields[4]) || !read_number(&row->band, reader->fields[5]))
-        reader->status =
-            ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: value and band must be numbers or empty: '%s', '%s'",
-                    reader->path, reader->line, reader->fields[4], reader->fields[5]);
-}
-
-ck_Status ck_baseline_read(ck_Baseline *baseline, const char *path, ck_Error *error) {
+ck_Status ck_baseline_read(ck_Baseline *baseline, const char *directory, ck_Error *error) {
     *baseline = (ck_Baseline){0};
-    FILE *file = fopen(path, "r");
-    struct csv_parser parser;
-    if (!file) return ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
-    if (csv_init(&parser, CSV_STRICT)) {
-        fclose(file);
-        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_CsvTable table;
+    ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_BASELINE], error);
+    if (!status && !table.row_count)
+        status = ck_fail(error, CK_BAD_INPUT, "%s/%s: holds no rows; 'clothcheck check --update' writes it", directory,
+                         ck_layouts[CK_BASELINE].file);
+    if (!status && !(baseline->rows = calloc((size_t)table.row_count, sizeof *baseline->rows)))
+        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < table.row_count && !status; i++) {
+        ck_BaselineRow *row = &baseline->rows[baseline->count++];
+        snprintf(row->scene, sizeof row->scene, "%s", ck_csv_table_text(&table, i, 0));
+        snprintf(row->engine, sizeof row->engine, "%s", ck_csv_table_text(&table, i, 1));
+        snprintf(row->status, sizeof row->status, "%s", ck_csv_table_text(&table, i, 2));
+        snprintf(row->metric, sizeof row->metric, "%s", ck_csv_table_text(&table, i, 3));
+        row->value = ck_csv_table_number(&table, i, 4);
+        row->band = ck_csv_table_number(&table, i, 5);
     }
-    Reader reader = {.baseline = baseline, .path = path, .error = error};
-    char text[4096];
-    for (size_t got; (got = fread(text, 1, sizeof text, file)) > 0;)
-        csv_parse(&parser, text, got, take_field, end_row, &reader);
-    csv_fini(&parser, take_field, end_row, &reader);
-    csv_free(&parser);
-    fclose(file);
-    if (!reader.status && !baseline->count)
-        return ck_fail(error, CK_BAD_INPUT, "%s: holds no rows; 'clothcheck check --update' writes it", path);
-    return reader.status;
+    ck_csv_table_free(&table);
+    return status;
 }
 
 void ck_baseline_free(ck_Baseline *baseline) {

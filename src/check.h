@@ -7,8 +7,6 @@
 #include "measurement.h"
 #include "study.h"
 
-extern const char *const ck_baseline_columns[];
-
 // A row of the baseline.
 typedef struct ck_BaselineRow {
     char scene[64], engine[64], status[32], metric[64];
@@ -20,8 +18,9 @@ typedef struct ck_Baseline {
     int count;
 } ck_Baseline;
 
-// Errors: CK_BAD_INPUT with file, line and what is wrong; CK_IO, CK_NO_MEMORY. Free with ck_baseline_free in any case.
-ck_Status ck_baseline_read(ck_Baseline *baseline, const char *path, ck_Error *error);
+// Reads directory/metrics.csv. Errors: CK_BAD_INPUT with file, line and what is wrong; CK_IO, CK_NO_MEMORY. Free with
+// ck_baseline_free in any case.
+ck_Status ck_baseline_read(ck_Baseline *baseline, const char *directory, ck_Error *error);
 void ck_baseline_free(ck_Baseline *baseline);
 
 // Adds a row as it is.

@@ -17,9 +17,6 @@
 // Beyond this many times its length a bar has blown up, finite or not.
 #define BLOWN_UP 1000
 
-const char *const ck_claims_columns[] = {"claim",  "scene", "engine", "mended", "parameter", "parameter_value",
-                                         "metric", "unit",  "value",  "low",    "high",      NULL};
-
 typedef enum Parameter { SWEEPS, FRAME_RATE, SUBSTEPS, NOTHING } Parameter;
 static const char *const parameter_names[] = {"sweeps", "frame_rate", "substeps", ""};
 

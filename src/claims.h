@@ -7,8 +7,6 @@
 #include "scene.h"
 #include "status.h"
 
-extern const char *const ck_claims_columns[], *const ck_quirks_columns[];
-
 // Adds a row for each claim, value and metric: value at the end, and the range of it over the last quarter.
 //   scenes    directory of the seeds' scene files
 //   progress  may be NULL

@@ -60,7 +60,7 @@ int ck_command_bench(int argc, char **argv) {
     ck_Status status = read_arguments(argc, argv, &options, &out, &error);
     int failed = status ? 0 : ck_path_make(out);
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", out, strerror(failed));
-    if (!status) status = ck_csv_open(&csv, out, "bench.csv", ck_bench_columns, &error);
+    if (!status) status = ck_csv_open(&csv, out, &ck_layouts[CK_BENCH], &error);
     if (!status) status = ck_bench_write(&csv, &options, &error);
     if (options.progress) fprintf(stderr, "\r\033[K");
     if (!status) status = ck_csv_close(&csv, &error);

@@ -121,7 +121,7 @@ static ck_Status update(const Work *work, ck_Error *error) {
     ck_Csv csv = {0};
     int failed = ck_path_make(BASELINE_DIRECTORY);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", BASELINE_DIRECTORY, strerror(failed)) : CK_OK;
-    if (!status) status = ck_csv_open(&csv, BASELINE_DIRECTORY, BASELINE_NAME, ck_baseline_columns, error);
+    if (!status) status = ck_csv_open(&csv, BASELINE_DIRECTORY, &ck_layouts[CK_BASELINE], error);
     int added = 0;
     for (int i = 0; i < work->baseline.count && !status; i++)
         if (!is_measured(&work->check, &work->baseline.rows[i])) ck_baseline_add(&work->baseline.rows[i], &csv);
@@ -142,7 +142,7 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
     int failed = ck_path_make(arguments->out);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", arguments->out, strerror(failed)) : CK_OK;
     if (!status) status = ck_arguments_all_scenes(arguments, error);
-    ck_Status found = status ? status : ck_baseline_read(&work->baseline, BASELINE_DIRECTORY "/" BASELINE_NAME, error);
+    ck_Status found = status ? status : ck_baseline_read(&work->baseline, BASELINE_DIRECTORY, error);
     if (!status && !arguments->is_update) status = found;
     ck_command_catch_signals();
     if (!status) status = load_scenes(work, error);

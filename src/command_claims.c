@@ -21,8 +21,8 @@ static ck_Status write_tables(const char *out, ck_Error *error) {
     ck_Csv claims = {0}, quirks = {0};
     int failed = ck_path_make(out);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", out, strerror(failed)) : CK_OK;
-    if (!status) status = ck_csv_open(&quirks, out, "quirks.csv", ck_quirks_columns, error);
-    if (!status) status = ck_csv_open(&claims, out, "claims.csv", ck_claims_columns, error);
+    if (!status) status = ck_csv_open(&quirks, out, &ck_layouts[CK_QUIRKS], error);
+    if (!status) status = ck_csv_open(&claims, out, &ck_layouts[CK_CLAIMS], error);
     if (!status) status = ck_quirks_write(&quirks, "scenes", error);
     if (!status) status = ck_claims_write(&claims, "scenes", isatty(STDERR_FILENO) ? show_progress : NULL, error);
     if (isatty(STDERR_FILENO)) fprintf(stderr, "\r\033[K");

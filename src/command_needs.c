@@ -24,7 +24,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
                         &arguments->options.limits, error);
     const ck_Study study = ck_needs_study(&needs);
     if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
-    if (!status) status = ck_csv_open(&csv, arguments->out, "needs.csv", ck_needs_columns, error);
+    if (!status) status = ck_csv_open(&csv, arguments->out, &ck_layouts[CK_NEEDS], error);
     if (!status) ck_needs_write(&needs, rows, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) ck_study_command_done(command, &study, "needs.csv");

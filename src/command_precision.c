@@ -11,10 +11,8 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     const ck_Study study = ck_precision_study(&precision);
     // it times its runs: side by side they would slow each other down
     if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
-    if (!status) status = ck_csv_open(&csv, command->arguments->out, "precision.csv", ck_precision_columns, error);
-    if (!status)
-        status = ck_csv_open(&summary, command->arguments->out, "precision_summary.csv", ck_precision_summary_columns,
-                             error);
+    if (!status) status = ck_csv_open(&csv, command->arguments->out, &ck_layouts[CK_PRECISION], error);
+    if (!status) status = ck_csv_open(&summary, command->arguments->out, &ck_layouts[CK_PRECISION_SUMMARY], error);
     if (!status) ck_precision_write(&precision, rows, &csv, &summary);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) status = ck_csv_close(&summary, error);

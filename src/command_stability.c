@@ -10,7 +10,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     ck_Status status = ck_stability_map_create(&map, command->comparison, &command->arguments->options, error);
     const ck_Study study = ck_stability_map_study(&map);
     if (!status) status = ck_study_command_run(command, &study, 0, &rows, error);
-    if (!status) status = ck_csv_open(&csv, command->arguments->out, "stability.csv", ck_stability_columns, error);
+    if (!status) status = ck_csv_open(&csv, command->arguments->out, &ck_layouts[CK_STABILITY], error);
     if (!status) ck_stability_map_write(&map, rows, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) ck_study_command_done(command, &study, "stability.csv");

@@ -1,5 +1,6 @@
 #include "command.h"
 #include "path.h"
+#include "replay.h"
 #include "tables.h"
 
 #include <math.h>
@@ -51,6 +52,7 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
         status = ck_comparison_run(&comparisons[i], &options, error);
         if (terminal) fprintf(stderr, "\r\033[K");
         if (!status && arguments->out) ck_tables_add(tables, &comparisons[i], &options);
+        if (!status && arguments->out) status = ck_replay_write(&comparisons[i], arguments->out, error);
         if (!status) show(&comparisons[i]);
         ck_comparison_free_runs(&comparisons[i]);
     }

@@ -31,7 +31,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     options.cache = cache;
     ck_Tuning tuning;
     ck_Csv csv = {0};
-    ck_Status status = ck_csv_open(&csv, arguments->out, "tune.csv", ck_tune_columns, error);
+    ck_Status status = ck_csv_open(&csv, arguments->out, &ck_layouts[CK_TUNE], error);
     if (!status) status = ck_tune_run(&tuning, command->comparison, &options, &csv, error);
     if (options.progress) fprintf(stderr, "\r\033[K");
     if (!status) status = ck_csv_close(&csv, error);

@@ -11,14 +11,14 @@
 #include <string.h>
 #include <unistd.h>
 
-ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const char *name, const char *const *columns,
-                      ck_Error *error) {
+ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const ck_Layout *layout, ck_Error *error) {
+    const char *name = layout->file;
     *csv = (ck_Csv){.path = ck_path_join(directory, name), .part = ck_path_part(directory, name)};
     if (!csv->path || !csv->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     csv->file = fopen(csv->part, "w");
     if (!csv->file) return ck_fail(error, CK_IO, "%s: %s", csv->part, strerror(errno));
-    while (columns[csv->column_count]) csv->column_count++;
-    for (int i = 0; i < csv->column_count; i++) ck_csv_text(csv, columns[i]);
+    csv->column_count = ck_layout_column_count(layout);
+    for (int i = 0; i < csv->column_count; i++) ck_csv_text(csv, layout->columns[i].name);
     return CK_OK;
 }
 

@@ -2,6 +2,7 @@
 #ifndef CK_CSV_FILE_H
 #define CK_CSV_FILE_H
 
+#include "layout.h"
 #include "status.h"
 
 #include <stdint.h>
@@ -13,11 +14,9 @@ typedef struct ck_Csv {
     int column_count, column;
 } ck_Csv;
 
-// Starts directory/name with its header.
-//   columns  names, ended by NULL
+// Starts a layout's file in a directory, with its header.
 // Errors: CK_IO, CK_NO_MEMORY. End with ck_csv_close or ck_csv_discard in any case.
-ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const char *name, const char *const *columns,
-                      ck_Error *error);
+ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const ck_Layout *layout, ck_Error *error);
 
 // One field each. Rows end by themselves after the last column. Write errors are told by ck_csv_close.
 // A number is written so that it reads back the same (%.17g); NaN is an empty field.

@@ -252,6 +252,12 @@ static double energy_of(const ck_Model *model, const ck_Trajectory *trajectory, 
     return energy.kinetic + energy.elastic + energy.field;
 }
 
+static double mechanical_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                                   const ck_Reference *reference) {
+    (void)reference;
+    return energy_of(model, trajectory, frame);
+}
+
 // In units of the energy that the truth turns over: its largest drop of potential, or what it has at the start.
 static double energy_path_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     double off = path_rms(model, trajectory, reference, energy_of);
@@ -292,6 +298,8 @@ static const ck_Metric metrics[] = {
      .over = ck_metric_wrap_friction_over},
     {"contact_force", "1", "Force of the colliders at the end / weight", CK_TRUTH_ONE_STILL,
      .over = ck_metric_contact_force_over},
+    {"energy", "J", "Mechanical energy, of gravity and force counted from the start; over time only",
+     CK_TRUTH_OF_SERIES, .at = mechanical_energy_at},
 };
 
 int ck_metric_count(void) {
@@ -316,13 +324,14 @@ bool ck_metric_is_wanted(const ck_Metric *metric, const ck_Model *model) {
 
 double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *trajectory,
                        const ck_Reference *reference) {
+    if (metric->truth == CK_TRUTH_OF_SERIES) return NAN;
     if (metric->over) return metric->over(model, trajectory, reference);
     return metric->at(model, trajectory, last_frame(trajectory), reference);
 }
 
 double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_Reference *reference) {
     if (metric->truth == CK_TRUTH_ONE_STILL) return reference->is_static ? 1 : NAN;
-    if (metric->truth == CK_TRUTH_NONE) return NAN;
+    if (metric->truth == CK_TRUTH_NONE || metric->truth == CK_TRUTH_OF_SERIES) return NAN;
     if (!reference->trajectory.frame_count && (!reference->is_invariant || metric->truth == CK_TRUTH_OF_STATE))
         return NAN;
     if (metric->truth == CK_TRUTH_OF_STATE && reference->is_static && !metric->at) return NAN;

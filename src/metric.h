@@ -20,6 +20,7 @@ typedef enum ck_MetricTruth {
     CK_TRUTH_ZERO_STILL, // 0 where the truth is at rest, else none
     CK_TRUTH_ONE_STILL,  // 1 where the truth is at rest, else none
     CK_TRUTH_NONE,
+    CK_TRUTH_OF_SERIES, // as of the state, but only over time: the metric is no result of a run
 } ck_MetricTruth;
 
 typedef struct ck_Metric {

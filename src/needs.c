@@ -5,10 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const ck_needs_columns[] = {"scene",      "engine",        "left_out", "metric",    "unit",
-                                        "with",       "without",       "change",   "tolerance", "matters",
-                                        "cpu_with_s", "cpu_without_s", "status",   "reason",    NULL};
-
 // A scene file with one term changed: the parts that changes point to.
 typedef struct Reduced {
     ck_SceneFile file;

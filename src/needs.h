@@ -7,8 +7,6 @@
 #include "measurement.h"
 #include "study.h"
 
-extern const char *const ck_needs_columns[];
-
 #define CK_NEEDS_MOST 64
 
 typedef struct ck_NeedsCase {

@@ -17,12 +17,6 @@
 
 enum { DT, SUBSTEPS, ITERATIONS, ERROR, SAG_ERROR, STRETCH_ERROR, CPU, CPU_RANGE };
 
-const char *const ck_precision_columns[] = {"scene",         "engine", "substeps",  "iterations", "sweeps",
-                                            "time_step_s",   "status", "reason",    "error",      "sag_error",
-                                            "stretch_error", "cpu_s",  "cpu_iqr_s", "on_front",   NULL};
-const char *const ck_precision_summary_columns[] = {"scene", "engine",   "quantity", "unit",
-                                                    "value", "expected", "reason",   NULL};
-
 // What the engine's own rule sets; false where it does not take the scene.
 static bool find_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
                            ck_Settings *used) {

@@ -6,9 +6,6 @@
 #include "csv_file.h"
 #include "study.h"
 
-extern const char *const ck_precision_columns[];
-extern const char *const ck_precision_summary_columns[];
-
 typedef struct ck_PrecisionCase {
     const ck_Engine *engine;
     ck_Settings settings;

@@ -11,9 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const ck_quirks_columns[] = {"engine",    "quirk",  "experiment", "metric", "unit",
-                                         "as_it_was", "mended", "physics",    NULL};
-
 typedef struct Quirk {
     const char *engine;
     uint32_t bit; // 0: the scene's own

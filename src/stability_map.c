@@ -42,11 +42,6 @@ static const char *const class_names[] = {"ok",      "unsettled", "overstretched
 
 enum { CLASS, DT, STRAIN_EXCESS, SPEED, PREDICTED, STABLE, UNSTABLE };
 
-const char *const ck_stability_columns[] = {
-    "scene",  "engine", "case",          "damping",   "stiffness_factor", "iterations",       "time_step_s",
-    "status", "reason", "strain_excess", "speed_m_s", "critical_step_s",  "predicted_step_s", "ratio",
-    NULL};
-
 // For λ = −1 of one mode. Symplectic Euler with implicit damping: Ω² = 4 + 2·g, with Ω = ω·dt, g = damping·dt.
 // Transverse tension stepped explicitly: sqrt(m·l/T).
 double ck_stability_limit(ck_Method method, double frequency, double damping, double transverse) {

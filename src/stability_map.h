@@ -6,8 +6,6 @@
 #include "csv_file.h"
 #include "study.h"
 
-extern const char *const ck_stability_columns[];
-
 typedef struct ck_StabilityCase {
     const ck_Engine *engine;
     bool is_critical;    // bisects the critical step; else one cell of the map

@@ -8,34 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MAX_COLUMNS 20
-
-static const struct {
-    const char *name;
-    const char *columns[MAX_COLUMNS];
-} layouts[CK_TABLE_COUNT] = {
-    [CK_RUNS] = {"runs.csv",
-                 {"scene", "engine", "status", "reason", "time_step_s", "substeps", "iterations", "simulated_s",
-                  "cpu_median_s", "cpu_iqr_s", "cpu_worst_step_s", "realtime_factor", "peak_rss_bytes",
-                  "engine_version", "method", "command"}},
-    [CK_METRICS] = {"metrics.csv",
-                    {"scene", "engine", "metric", "unit", "value", "truth", "truth_kind", "truth_uncertainty", "error",
-                     "predicted"}},
-    [CK_DEVIATIONS] = {"deviations.csv", {"scene", "metric", "engine", "other_engine", "deviation", "unit"}},
-    [CK_LEDGER] = {"ledger.csv",
-                   {"scene", "engine", "quantity", "wanted", "unit", "native_parameter", "native_value", "formula",
-                    "match"}},
-    [CK_SERIES] = {"series.csv", {"scene", "engine", "time_s", "metric", "value"}},
-    [CK_MACHINE] = {"machine.csv", {"key", "value"}},
-};
-
 ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *error) {
     *tables = (ck_Tables){0};
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
     ck_Status status = CK_OK;
-    for (int i = 0; i < CK_TABLE_COUNT && !status; i++)
-        status = ck_csv_open(&tables->csv[i], directory, layouts[i].name, layouts[i].columns, error);
+    for (int i = 0; i < CK_COMPARISON_LAYOUTS && !status; i++)
+        status = ck_csv_open(&tables->csv[i], directory, &ck_layouts[i], error);
     return status;
 }
 
@@ -160,20 +139,39 @@ static void add_ledger(ck_Csv *csv, const ck_Run *run) {
     }
 }
 
+static void add_series_row(ck_Csv *csv, const ck_Model *model, const char *engine, double time, const ck_Metric *metric,
+                           double value) {
+    if (isnan(value)) return;
+    ck_csv_text(csv, model->name);
+    ck_csv_text(csv, engine);
+    ck_csv_number(csv, time);
+    ck_csv_text(csv, metric->name);
+    ck_csv_number(csv, value);
+}
+
 // Frames as far as the run came: those before a failure tell most about it.
-static void add_series(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *run) {
+static void add_series(ck_Csv *csv, const ck_Comparison *comparison, const char *engine, const ck_Trajectory *path) {
     const ck_Model *model = &comparison->model;
+    const ck_Reference *reference = &comparison->truth.reference;
     for (int i = 0; i < ck_metric_count(); i++) {
         const ck_Metric *metric = ck_metric_at(i);
-        for (int frame = 0; frame < run->trajectory.frame_count && metric->at && ck_metric_is_wanted(metric, model);
-             frame++) {
-            double value = metric->at(model, &run->trajectory, frame, &comparison->truth.reference);
-            if (isnan(value)) continue;
-            ck_csv_text(csv, model->name);
-            ck_csv_text(csv, run->engine->name);
-            ck_csv_number(csv, frame * model->step);
-            ck_csv_text(csv, metric->name);
-            ck_csv_number(csv, value);
+        for (int frame = 0; frame < path->frame_count && metric->at && ck_metric_is_wanted(metric, model); frame++)
+            add_series_row(csv, model, engine, frame * model->step, metric, metric->at(model, path, frame, reference));
+    }
+}
+
+// A truth at rest is there at the start and at the end, and none of its distances to itself.
+static void add_truth_series(ck_Csv *csv, const ck_Comparison *comparison) {
+    const ck_Model *model = &comparison->model;
+    const ck_Reference *truth = &comparison->truth.reference;
+    for (int i = 0; i < ck_metric_count(); i++) {
+        const ck_Metric *metric = ck_metric_at(i);
+        bool is_its_own = metric->truth == CK_TRUTH_OF_STATE || metric->truth == CK_TRUTH_OF_SERIES;
+        if (!is_its_own || !metric->at || !ck_metric_is_wanted(metric, model)) continue;
+        for (int frame = 0; frame < truth->trajectory.frame_count; frame++) {
+            double value = metric->at(model, &truth->trajectory, frame, truth);
+            add_series_row(csv, model, "truth", frame * model->step, metric, value);
+            if (truth->is_static) add_series_row(csv, model, "truth", model->duration, metric, value);
         }
     }
 }
@@ -182,20 +180,22 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
     for (int i = 0; i < comparison->run_count; i++) {
         add_run(&tables->csv[CK_RUNS], comparison, &comparison->runs[i], options);
         add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
-        add_series(&tables->csv[CK_SERIES], comparison, &comparison->runs[i]);
+        add_series(&tables->csv[CK_SERIES], comparison, comparison->runs[i].engine->name,
+                   &comparison->runs[i].trajectory);
         if (ck_comparison_has_path(comparison, i)) add_metrics(&tables->csv[CK_METRICS], comparison, i);
         add_consistency(&tables->csv[CK_METRICS], comparison, i);
     }
+    add_truth_series(&tables->csv[CK_SERIES], comparison);
     add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
 }
 
 ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error) {
     ck_machine_write(&tables->csv[CK_MACHINE]);
     ck_Status status = CK_OK;
-    for (int i = 0; i < CK_TABLE_COUNT && !status; i++) status = ck_csv_close(&tables->csv[i], error);
+    for (int i = 0; i < CK_COMPARISON_LAYOUTS && !status; i++) status = ck_csv_close(&tables->csv[i], error);
     return status;
 }
 
 void ck_tables_discard(ck_Tables *tables) {
-    for (int i = 0; i < CK_TABLE_COUNT; i++) ck_csv_discard(&tables->csv[i]);
+    for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) ck_csv_discard(&tables->csv[i]);
 }

@@ -5,18 +5,8 @@
 #include "comparison.h"
 #include "csv_file.h"
 
-typedef enum ck_TableName {
-    CK_RUNS,
-    CK_METRICS,
-    CK_DEVIATIONS,
-    CK_LEDGER,
-    CK_SERIES,
-    CK_MACHINE,
-    CK_TABLE_COUNT
-} ck_TableName;
-
 typedef struct ck_Tables {
-    ck_Csv csv[CK_TABLE_COUNT];
+    ck_Csv csv[CK_COMPARISON_LAYOUTS];
 } ck_Tables;
 
 // Starts all six in a directory, which is made where it is missing.

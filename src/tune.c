@@ -14,12 +14,6 @@
 #define PENALTY 20
 #define FAILED 1e3
 
-const char *const ck_tune_columns[] = {
-    "scene",           "engine",     "role",         "substeps",         "iterations",
-    "relaxation",      "compliance", "klst",         "stiffness_factor", "status",
-    "reason",          "error",      "static_error", "dynamic_error",    "tolerance",
-    "meets_tolerance", "work_per_s", "cpu_s",        "bounds_hit",       NULL};
-
 // How far a variable may go, in powers of two or, for relaxation, as it is.
 typedef struct Range {
     int variable;

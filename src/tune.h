@@ -7,8 +7,6 @@
 #include "journal.h"
 #include "trial.h"
 
-extern const char *const ck_tune_columns[];
-
 // What may be varied: settings by their number, and the springs' stiffness, which is the scene's to give.
 #define CK_TUNE_STIFFNESS CK_SETTING_COUNT
 #define CK_TUNE_VARIABLES (CK_SETTING_COUNT + 1)

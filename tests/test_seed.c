@@ -153,7 +153,7 @@ static void test_quirks(void **state) {
     char directory[] = "/tmp/clothcheck-XXXXXX", path[100], line[1000];
     assert_non_null(mkdtemp(directory));
     ck_Csv csv = {0};
-    assert_int_equal(ck_csv_open(&csv, directory, "quirks.csv", ck_quirks_columns, NULL), CK_OK);
+    assert_int_equal(ck_csv_open(&csv, directory, &ck_layouts[CK_QUIRKS], NULL), CK_OK);
     assert_int_equal(ck_quirks_write(&csv, SCENE_DIRECTORY, NULL), CK_OK);
     assert_int_equal(ck_csv_close(&csv, NULL), CK_OK);
     snprintf(path, sizeof path, "%s/quirks.csv", directory);

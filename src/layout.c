@@ -1,0 +1,95 @@
+#include "layout.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define NAME(column)                                                                                                   \
+    { column, CK_COLUMN_NAME }
+#define TEXT(column)                                                                                                   \
+    { column, CK_COLUMN_TEXT }
+#define NUMBER(column)                                                                                                 \
+    { column, CK_COLUMN_NUMBER }
+#define STATUS(column)                                                                                                 \
+    { column, CK_COLUMN_STATUS }
+
+const ck_Layout ck_layouts[CK_LAYOUT_COUNT] = {
+    [CK_RUNS] = {"runs.csv",
+                 "how each run ended, its settings and its cost",
+                 {NAME("scene"), NAME("engine"), STATUS("status"), NAME("reason"), NUMBER("time_step_s"),
+                  NUMBER("substeps"), NUMBER("iterations"), NUMBER("simulated_s"), NUMBER("cpu_median_s"),
+                  NUMBER("cpu_iqr_s"), NUMBER("cpu_worst_step_s"), NUMBER("realtime_factor"), NUMBER("peak_rss_bytes"),
+                  TEXT("engine_version"), TEXT("method"), NAME("command")}},
+    [CK_METRICS] = {"metrics.csv",
+                    "what was measured, and how far from the truth it is",
+                    {NAME("scene"), NAME("engine"), NAME("metric"), NAME("unit"), NUMBER("value"), NUMBER("truth"),
+                     TEXT("truth_kind"), NUMBER("truth_uncertainty"), NUMBER("error"), NUMBER("predicted")}},
+    [CK_DEVIATIONS] = {"deviations.csv",
+                       "each engine against each other one",
+                       {NAME("scene"), NAME("metric"), NAME("engine"), NAME("other_engine"), NUMBER("deviation"),
+                        NAME("unit")}},
+    [CK_LEDGER] = {"ledger.csv",
+                   "what was asked of each engine, and what it got",
+                   {NAME("scene"), NAME("engine"), NAME("quantity"), NUMBER("wanted"), TEXT("unit"),
+                    TEXT("native_parameter"), NUMBER("native_value"), TEXT("formula"), NAME("match")}},
+    [CK_SERIES] = {"series.csv",
+                   "metrics at every frame, of the engines and of the truth",
+                   {NAME("scene"), NAME("engine"), NUMBER("time_s"), NAME("metric"), NUMBER("value")}},
+    [CK_MACHINE] = {"machine.csv", "where it ran", {NAME("key"), TEXT("value")}},
+    [CK_PRECISION] = {"precision.csv",
+                      "error against cost over time steps and iterations",
+                      {NAME("scene"), NAME("engine"), NUMBER("substeps"), NUMBER("iterations"), NUMBER("sweeps"),
+                       NUMBER("time_step_s"), STATUS("status"), NAME("reason"), NUMBER("error"), NUMBER("sag_error"),
+                       NUMBER("stretch_error"), NUMBER("cpu_s"), NUMBER("cpu_iqr_s"), NUMBER("on_front")}},
+    [CK_PRECISION_SUMMARY] = {"precision_summary.csv",
+                              "orders of convergence, least errors, cost to reach an error",
+                              {NAME("scene"), NAME("engine"), NAME("quantity"), NAME("unit"), NUMBER("value"),
+                               NUMBER("expected"), TEXT("reason")}},
+    [CK_STABILITY] = {"stability.csv",
+                      "where methods fail, and where theory says they do",
+                      {NAME("scene"), NAME("engine"), NAME("case"), NAME("damping"), NUMBER("stiffness_factor"),
+                       NUMBER("iterations"), NUMBER("time_step_s"), STATUS("status"), NAME("reason"),
+                       NUMBER("strain_excess"), NUMBER("speed_m_s"), NUMBER("critical_step_s"),
+                       NUMBER("predicted_step_s"), NUMBER("ratio")}},
+    [CK_TUNE] = {"tune.csv",
+                 "settings that were tried, and the one chosen",
+                 {NAME("scene"), NAME("engine"), NAME("role"), NUMBER("substeps"), NUMBER("iterations"),
+                  NUMBER("relaxation"), NUMBER("compliance"), NUMBER("klst"), NUMBER("stiffness_factor"),
+                  STATUS("status"), NAME("reason"), NUMBER("error"), NUMBER("static_error"), NUMBER("dynamic_error"),
+                  NUMBER("tolerance"), TEXT("meets_tolerance"), NUMBER("work_per_s"), NUMBER("cpu_s"),
+                  TEXT("bounds_hit")}},
+    [CK_NEEDS] = {"needs.csv",
+                  "what the scene needs to be modelled, and what not",
+                  {NAME("scene"), NAME("engine"), NAME("left_out"), NAME("metric"), TEXT("unit"), NUMBER("with"),
+                   NUMBER("without"), NUMBER("change"), NUMBER("tolerance"), NAME("matters"), NUMBER("cpu_with_s"),
+                   NUMBER("cpu_without_s"), STATUS("status"), NAME("reason")}},
+    [CK_BENCH] = {"bench.csv",
+                  "how fast the engines are, and how cost grows",
+                  {NAME("body"), NUMBER("particles"), NUMBER("springs"), TEXT("engine"), TEXT("setup"), NAME("metric"),
+                   NAME("unit"), NUMBER("value"), NUMBER("low"), NUMBER("high"), TEXT("reason")}},
+    [CK_CLAIMS] = {"claims.csv",
+                   "what was claimed of the two origins",
+                   {NAME("claim"), NAME("scene"), NAME("engine"), NUMBER("mended"), TEXT("parameter"),
+                    NUMBER("parameter_value"), NAME("metric"), TEXT("unit"), NUMBER("value"), NUMBER("low"),
+                    NUMBER("high")}},
+    [CK_QUIRKS] = {"quirks.csv",
+                   "what the quirks of the two origins cost",
+                   {NAME("engine"), NAME("quirk"), NAME("experiment"), NAME("metric"), TEXT("unit"),
+                    NUMBER("as_it_was"), NUMBER("mended"), NUMBER("physics")}},
+    [CK_BASELINE] = {"metrics.csv",
+                     "what was measured before, and how far it may move",
+                     {NAME("scene"), NAME("engine"), STATUS("status"), TEXT("metric"), NUMBER("value"),
+                      NUMBER("band")}},
+};
+
+int ck_layout_column_count(const ck_Layout *layout) {
+    int count = 0;
+    while (layout->columns[count].name) count++;
+    return count;
+}
+
+int ck_layout_column(const ck_Layout *layout, const char *name) {
+    int column = 0;
+    while (layout->columns[column].name && strcmp(layout->columns[column].name, name)) column++;
+    assert(layout->columns[column].name);
+    return column;
+}

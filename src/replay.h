@@ -1,0 +1,48 @@
+// The paths of a comparison's runs and of its truth, thinned to what is worth looking at. One file a scene.
+//
+// replays/SCENE.replay begins with lines of text, as
+//     clothcheck replay 1
+//     scene cloth_on_sphere
+//     columns 20                       of a cloth: particle = row*columns + column; else 0
+//     particles 400
+//     springs 760
+//     frames 61
+//     paths 12
+//     path native-verlet               one a path, in their order; "truth" where there is one
+//     plane 0 -1 0 0 1 0               any number of these: point and normal, m
+//     sphere 0 -1 0 0.3                and of these: centre and radius, m
+//     data
+// and goes on with little-endian numbers: times [frames] float32, s; structural springs [springs][2] int32; their rest
+// lengths [springs] float32, m; positions [paths][frames][particles][3] float32, m, NaN after a run's last frame.
+#ifndef CK_REPLAY_H
+#define CK_REPLAY_H
+
+#include "comparison.h"
+
+#define CK_REPLAY_DIRECTORY "replays"
+
+typedef struct ck_Replay {
+    char *bytes; // of the file; owned
+    size_t size, header_size;
+    int particle_count, spring_count, frame_count, path_count;
+} ck_Replay;
+
+// Writes a finished comparison's replay below a directory: every k-th frame and the last, so that there are at most 61
+// and the file has some 4 MiB. Errors: CK_IO, CK_NO_MEMORY, and then there is none.
+ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, ck_Error *error);
+
+// Reads a scene's. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY. Free with ck_replay_free in any case.
+ck_Status ck_replay_read(ck_Replay *replay, const char *directory, const char *scene, ck_Error *error);
+
+// Accepts a zeroed replay.
+void ck_replay_free(ck_Replay *replay);
+
+// The same for a page, in numbers that deflate well: the header, times, springs and rest lengths as in the file; a box
+// [2][3] float32, m, least and largest corner; then for each path a byte, and its positions as 16-bit codes, of which
+// first all low bytes and then all high bytes. Code 65535 is no position, c in 0 … 65534 stands for
+// least + (largest − least)·c/65534. Codes are written as differences, modulo 65536 and zigzag, to the frame before;
+// where the path's byte is 1, also less the same difference of the first path. Before the first frame codes are 0.
+// Errors: CK_NO_MEMORY. Free *packed in any case.
+ck_Status ck_replay_pack(char **packed, size_t *size, const ck_Replay *replay, ck_Error *error);
+
+#endif
