@@ -24,6 +24,7 @@ int ck_command_tune(int argc, char **argv);
 int ck_command_needs(int argc, char **argv);
 int ck_command_check(int argc, char **argv);
 int ck_command_merge(int argc, char **argv);
+int ck_command_report(int argc, char **argv);
 
 // What run and compare have in common on their command lines.
 typedef struct ck_Arguments {

@@ -70,10 +70,11 @@ static bool is_number(const char *text) {
     return end != text && !*end;
 }
 
+// What a run can end in, and what a map of stability knows besides.
 static bool is_status(const char *text) {
     for (int i = 0; i < CK_RUN_STATUS_COUNT; i++)
         if (!strcmp(ck_run_status_names[i], text)) return true;
-    return false;
+    return !strcmp(text, "frozen") || !strcmp(text, "clamped");
 }
 
 // What is wrong with a field; NULL: nothing.

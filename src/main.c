@@ -16,6 +16,7 @@ static const ck_Command commands[] = {
     {"tune", "SCENE", "the cheapest settings within an error, or the closest to a goal: tune.csv", ck_command_tune},
     {"needs", "SCENE", "what the scene needs to be modelled, and what not: needs.csv", ck_command_needs},
     {"merge", "OUT DIR...", "joins the parts of a study that was run with --shard", ck_command_merge},
+    {"report", "DIR", "charts and one page of the CSVs in DIR", ck_command_report},
     {"claims", "", "what was claimed of the two origins, and what their quirks cost", ck_command_claims},
     {"bench", "", "how fast the engines are: per spring, per step, and as a cloth grows", ck_command_bench},
 };

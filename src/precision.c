@@ -67,6 +67,8 @@ static void add_engine(ck_Precision *precision, const ck_Engine *engine, const c
 ck_Status ck_precision_create(ck_Precision *precision, const ck_Comparison *comparison,
                               const ck_CompareOptions *options, ck_Error *error) {
     *precision = (ck_Precision){.comparison = comparison, .limits = options->limits, .repeats = options->repeats};
+    // the finest steps of a slow engine never end: most of the study's time went into waiting for that
+    precision->limits.foresees = true;
     const ck_Reference *reference = &comparison->truth.reference;
     if (!reference->trajectory.frame_count || reference->is_invariant)
         return ck_fail(error, CK_BAD_INPUT,
@@ -135,6 +137,7 @@ static void add_row(const ck_Precision *precision, const ck_JournalRow *rows, in
     ck_csv_number(csv, values[ITERATIONS]);
     ck_csv_number(csv, values[SUBSTEPS] * fmax(1, values[ITERATIONS]));
     ck_csv_number(csv, values[DT]);
+    ck_csv_number(csv, precision->comparison->model.frame_count * precision->comparison->model.step);
     ck_csv_text(csv, ck_run_status_names[rows[index].status]);
     ck_csv_text(csv, rows[index].reason);
     for (int i = ERROR; i <= CPU_RANGE; i++) ck_csv_number(csv, values[i]);

@@ -13,7 +13,9 @@
 
 #define MOST_FRAMES 61
 #define MOST_BYTES ((size_t)4 << 20)
-#define NO_POSITION 65535
+#define CODE_BITS 24
+#define CODE_MASK ((1u << CODE_BITS) - 1)
+#define NO_POSITION (1u << 21)
 
 // The frames that are kept: every stride-th, and the last.
 static int find_stride(const ck_Model *model, int paths) {
@@ -207,38 +209,38 @@ static void find_box(const ck_Replay *replay, float box[2][3]) {
     }
 }
 
-static uint16_t code_of(float at, const float box[2][3], size_t axis) {
+static uint32_t code_of(float at, const float box[2][3], size_t axis) {
     float share = (at - box[0][axis]) / (box[1][axis] - box[0][axis]);
     // also false where it is no number
-    return share >= 0 && share <= 1 ? (uint16_t)lrintf(share * (NO_POSITION - 1)) : NO_POSITION;
+    return share >= 0 && share <= 1 ? (uint32_t)lrintf(share * (float)(NO_POSITION - 1)) : NO_POSITION;
 }
 
-static uint16_t zigzag(uint16_t difference) {
-    return (uint16_t)(difference << 1) ^ (difference & 0x8000 ? 0xffff : 0);
+static uint32_t zigzag(uint32_t difference) {
+    bool is_negative = difference >> (CODE_BITS - 1) & 1;
+    return (difference << 1 ^ (is_negative ? CODE_MASK : 0)) & CODE_MASK;
 }
 
 // The change of a path's code since the frame before, less the first path's where it is led by it.
-static uint16_t change_at(const uint16_t *codes, const uint16_t *first, size_t index, size_t width) {
-    uint16_t change = (uint16_t)(codes[index] - (index < width ? 0 : codes[index - width]));
-    if (first) change = (uint16_t)(change - (first[index] - (index < width ? 0 : first[index - width])));
-    return zigzag(change);
+static uint32_t change_at(const uint32_t *codes, const uint32_t *first, size_t index, size_t width) {
+    uint32_t change = codes[index] - (index < width ? 0 : codes[index - width]);
+    if (first) change -= first[index] - (index < width ? 0 : first[index - width]);
+    return zigzag(change & CODE_MASK);
 }
 
 // Writes a path's codes in whichever way has smaller numbers. Returns what follows.
-static char *pack_path(char *out, const uint16_t *codes, const uint16_t *first, size_t count, size_t width) {
+static char *pack_path(char *out, const uint32_t *codes, const uint32_t *first, size_t count, size_t width) {
     double alone = 0, led = 0;
     for (size_t i = 0; i < count; i++) {
         alone += change_at(codes, NULL, i, width);
         led += change_at(codes, first, i, width);
     }
-    const uint16_t *leader = codes != first && led < alone ? first : NULL;
+    const uint32_t *leader = codes != first && led < alone ? first : NULL;
     *out++ = leader != NULL;
     for (size_t i = 0; i < count; i++) {
-        uint16_t change = change_at(codes, leader, i, width);
-        out[i] = (char)(change & 0xff);
-        out[count + i] = (char)(change >> 8);
+        uint32_t change = change_at(codes, leader, i, width);
+        for (size_t byte = 0; byte < CODE_BITS / 8; byte++) out[byte * count + i] = (char)(change >> 8 * byte & 0xff);
     }
-    return out + 2 * count;
+    return out + CODE_BITS / 8 * count;
 }
 
 ck_Status ck_replay_pack(char **packed, size_t *size, const ck_Replay *replay, ck_Error *error) {
@@ -246,9 +248,9 @@ ck_Status ck_replay_pack(char **packed, size_t *size, const ck_Replay *replay, c
     size_t count = path_codes(replay), width = 3 * (size_t)replay->particle_count;
     size_t paths = (size_t)replay->path_count;
     float box[2][3];
-    *size = before + sizeof box + paths * (1 + 2 * count);
+    *size = before + sizeof box + paths * (1 + CODE_BITS / 8 * count);
     *packed = malloc(*size);
-    uint16_t *codes = malloc((paths * count + 1) * sizeof *codes);
+    uint32_t *codes = malloc((paths * count + 1) * sizeof *codes);
     if (!*packed || !codes) {
         free(codes);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");

@@ -21,12 +21,14 @@ typedef struct Report {
     ck_Ledger ledger;
     int frame_count; // complete frames, the start among them
     double cpu, worst_step;
+    double foreseen; // s that the run would have taken; 0: it was not given up
 } Report;
 
 typedef struct Job {
     const ck_Run *run;
     Report *report;
     int frames; // to step
+    const ck_Limits *limits;
 } Job;
 
 static void *create(const Job *job) {
@@ -36,6 +38,15 @@ static void *create(const Job *job) {
     report->status = job->run->engine->create(&state, job->run->model, &job->run->wanted, &report->used,
                                               &report->ledger, &report->error);
     return state;
+}
+
+// After a twentieth of the time, and one frame at least, the rest can be foreseen.
+static bool is_hopeless(const Job *job) {
+    Report *report = job->report;
+    if (!job->limits->foresees || report->cpu < job->limits->seconds / 20) return false;
+    double foreseen = report->cpu / (report->frame_count - 1) * job->frames;
+    if (foreseen > 2 * job->limits->seconds) report->foreseen = foreseen;
+    return report->foreseen > 0;
 }
 
 static void measure(void *context) {
@@ -52,6 +63,7 @@ static void measure(void *context) {
         report->cpu += ck_thread_cpu() - start;
         if (report->step) break;
         ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
+        if (is_hopeless(job)) break;
     }
     engine->destroy(state);
 }
@@ -86,7 +98,7 @@ static const ck_RunStatus status_of_child[] = {
 };
 
 // Turns how the child ended and what it reported into the run's status and reason.
-static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *child) {
+static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *child, const ck_Limits *limits) {
     run->used = report->used;
     run->ledger = report->ledger;
     run->trajectory.frame_count = report->frame_count;
@@ -96,6 +108,10 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
     double time = fmax(0, report->frame_count - 1) * run->model->step;
     if (child->end != CK_CHILD_DONE) {
         snprintf(run->reason, sizeof run->reason, "%s, at t = %g s", child->reason, time);
+    } else if (report->foreseen > 0) {
+        run->status = CK_RUN_TIMED_OUT;
+        snprintf(run->reason, sizeof run->reason, "given up at t = %g s: it would take %.3g s, and the limit is %g s",
+                 time, report->foreseen, limits->seconds);
     } else if (report->status) {
         run->status = report->status == CK_NO_MEMORY ? CK_RUN_OUT_OF_MEMORY : CK_RUN_REFUSED;
         snprintf(run->reason, sizeof run->reason, "%s", report->error.message);
@@ -138,8 +154,8 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
     Report *report = ck_shared_allocate(sizeof *report);
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
-    ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count}, limits, error);
-    if (!status) conclude(run, report, &child);
+    ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count, limits}, limits, error);
+    if (!status) conclude(run, report, &child, limits);
     ck_shared_free(report, sizeof *report);
     return status;
 }
@@ -154,7 +170,7 @@ ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Er
     Report *report = ck_shared_allocate(sizeof *report);
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
-    ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames}, limits, error);
+    ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames, limits}, limits, error);
     if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
         timing->cpu[timing->repeat_count++] = report->cpu;
         timing->worst_step = fmax(timing->worst_step, report->worst_step);

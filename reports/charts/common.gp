@@ -1,0 +1,21 @@
+# What all charts share. 'looks.gp' before it says which engines there are, and how each looks: engines, place(name).
+# In: data, the chart's CSV; title. Out: present, the engines in its first column.
+set datafile separator comma
+# a row of another engine does not break the line of this one
+set datafile missing NaN
+set encoding utf8
+set border linewidth 0.8 linecolor '#444444'
+set grid linecolor '#d0d0d0' linewidth 0.6 dashtype 1
+set tics nomirror
+set key outside right top vertical Left reverse samplen 2 spacing 1.1
+set title title noenhanced
+set format y '%g'
+
+add(list, word) = strstrt(list.' ', ' '.word.' ') ? list : list.' '.word
+present = ''
+stats data using (present = add(present, strcol(1)), 0) skip 1 nooutput
+
+# where a word stands in a list, from 1
+place_in(list, name) = (sum [i = 1:words(list)] (word(list, i) eq name ? i : 0))
+# one engine's rows of a column
+only(engine, value) = strcol(1) eq engine ? value : NaN

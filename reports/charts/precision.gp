@@ -1,0 +1,15 @@
+# Error against cost over time steps and iterations. Engine, CPU s, error, on its engine's front, on the front.
+set logscale xy
+set format x '10^{%L}'
+set format y '10^{%L}'
+set xlabel 'CPU time for the scene, s'
+set ylabel 'rms distance to the truth / size'
+do for [level in '0.1 0.01 0.001'] {
+	set arrow from graph 0, first (level + 0) to graph 1, first (level + 0) nohead linecolor '#444444' dashtype 3
+	set label sprintf('%g %%', 100*(level + 0)) at graph 0.995, first (level + 0) right offset 0, 0.5 textcolor '#444444'
+}
+set offsets graph 0.02, graph 0.04, graph 0.02, graph 0.05
+plot data using ($5 == 1 ? $2 : NaN):3 skip 1 smooth unique with steps linecolor '#000000' linewidth 2.5 title 'Pareto front', \
+	for [engine in present] data using (only(engine, column(2))):3 skip 1 with points linetype place(engine) pointsize 0.7 notitle, \
+	for [engine in present] data using (only(engine, $4 == 1 ? column(2) : NaN)):3 skip 1 smooth unique \
+		with linespoints linetype place(engine) pointsize 1 title engine noenhanced

@@ -1,0 +1,202 @@
+// The replay: engines side by side or overlaid, one camera and one time for all.
+
+// True where there is no graphics processor: smooth edges would halve the speed.
+function drawsInSoftware() {
+	const context = document.createElement("canvas").getContext("webgl");
+	const info = context && context.getExtension("WEBGL_debug_renderer_info");
+	return !info || /swiftshader|llvmpipe|software/i.test(context.getParameter(info.UNMASKED_RENDERER_WEBGL));
+}
+
+class Replay {
+	constructor() {
+		this.canvas = document.getElementById("replay-canvas");
+		this.slider = document.getElementById("replay-time");
+		this.renderer = null;
+		this.isPlaying = false;
+		this.isDirty = false;
+		for (const id of ["replay-layout", "replay-color", "replay-truth"])
+			document.getElementById(id).addEventListener("change", () => this.redraw());
+		this.slider.addEventListener("input", () => this.redraw());
+		document.getElementById("replay-play").addEventListener("click", () => this.play(!this.isPlaying));
+		this.canvas.addEventListener("keydown", (event) => this.turn(event));
+		window.addEventListener("resize", () => this.redraw());
+	}
+
+	// Without a context there is no replay, and the rest of the page goes on.
+	start() {
+		if (this.renderer) return true;
+		try {
+			this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !drawsInSoftware() });
+		} catch {
+			return false;
+		}
+		this.renderer.setClearColor(0xffffff);
+		this.renderer.autoClear = false;
+		this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
+		this.controls = new THREE.OrbitControls(this.camera, this.canvas);
+		this.controls.enableKeys = false;
+		this.controls.addEventListener("change", () => this.redraw());
+		return true;
+	}
+
+	async load(scene) {
+		this.play(false);
+		const box = document.getElementById("replay");
+		box.hidden = !report.scenes.some((one) => one.name === scene && one.has_replay) || !this.start();
+		if (box.hidden) return;
+		this.data = parseReplay(await fileBytes(scene + ".replay"));
+		this.scene = scene;
+		this.world = new THREE.Scene();
+		this.world.add(makeColliders(this.data));
+		this.bodies = new Map([...this.data.paths.keys()].map((name) => [name, makeBody(this.data, name === "truth")]));
+		for (const body of this.bodies.values()) this.world.add(body.group);
+		this.strains = new Float32Array(this.data.particles);
+		this.range = await this.strainRange();
+		this.slider.max = this.data.times[this.data.times.length - 1];
+		this.slider.value = 0;
+		this.listEngines();
+		this.aim();
+		this.redraw();
+	}
+
+	// Colours reach to the largest strain of the truth, or where it tells of none of the engine in the middle.
+	async strainRange() {
+		const metrics = await table("metrics.csv");
+		const rows = (metrics ? metrics.rows : []).filter((row) => row.scene === this.scene && row.metric === "stretch_max");
+		const values = rows.map((row) => Math.abs(number(row.value))).filter((value) => value > 0).sort((a, b) => a - b);
+		const truth = rows.map((row) => number(row.truth)).find((value) => value > 0);
+		const range = truth || values[Math.floor(values.length / 2)] || 0.01;
+		const scale = document.getElementById("replay-scale");
+		const ramp = element("span");
+		ramp.style.background = "linear-gradient(90deg, rgb(219,214,204), rgb(128,10,26))";
+		scale.replaceChildren("strain of a particle's most stretched spring: 0", ramp, percent(range) + " and more");
+		return range;
+	}
+
+	listEngines() {
+		const box = document.getElementById("replay-engines");
+		box.replaceChildren(element("legend", { textContent: "Engines" }));
+		for (const name of this.bodies.keys()) {
+			if (name === "truth") continue;
+			const input = element("input", { type: "checkbox", checked: name !== "null", value: name });
+			input.addEventListener("change", () => this.redraw());
+			box.append(element("label", {}, input, " ", engineName(name)));
+		}
+	}
+
+	shownEngines() {
+		return [...document.querySelectorAll("#replay-engines input:checked")].map((input) => input.value);
+	}
+
+	aim() {
+		const names = this.bodies.has("truth") ? ["truth", ...this.shownEngines().slice(0, 1)] : this.shownEngines().slice(0, 1);
+		const sphere = boundsOf(this.data, names.length ? names : [...this.bodies.keys()]).getBoundingSphere(new THREE.Sphere());
+		const radius = Math.max(sphere.radius, 1e-3);
+		this.camera.near = radius / 100;
+		this.camera.far = radius * 100;
+		this.controls.target.copy(sphere.center);
+		this.camera.position.copy(sphere.center).add(new THREE.Vector3(0.55, 0.35, 1).setLength(3.6 * radius));
+		this.controls.update();
+	}
+
+	redraw() {
+		if (!this.data || this.isDirty) return;
+		this.isDirty = true;
+		requestAnimationFrame(() => {
+			this.isDirty = false;
+			this.draw();
+		});
+	}
+
+	// One view an engine, or one view of all.
+	draw() {
+		const time = Number(this.slider.value), engines = this.shownEngines();
+		const isOver = document.getElementById("replay-layout").value === "over";
+		const byEngine = document.getElementById("replay-color").value === "engine";
+		document.getElementById("replay-now").textContent = time.toFixed(3) + " s";
+		for (const [name, body] of this.bodies) {
+			showBody(this.data, body, this.data.paths.get(name), time);
+			if (name !== "truth") paintBody(this.data, body, this.strains, this.range, byEngine ? looks.get(name).color : null);
+		}
+		const views = isOver ? [engines] : engines.map((engine) => [engine]);
+		const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+		// a size that is set anew takes a new buffer, which costs more than the drawing
+		const size = this.renderer.getSize(new THREE.Vector2());
+		if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
+		this.renderer.setScissorTest(false);
+		this.renderer.clear();
+		this.renderer.setScissorTest(true);
+		const columns = Math.max(1, Math.ceil(Math.sqrt(views.length * width / height * 0.7)));
+		const rows = Math.max(1, Math.ceil(views.length / columns));
+		views.forEach((names, i) => this.drawView(names, {
+			x: (i % columns) * width / columns, y: height - (Math.floor(i / columns) + 1) * height / rows,
+			width: width / columns, height: height / rows,
+		}));
+		this.label(views, columns, rows, isOver);
+	}
+
+	drawView(names, { x, y, width, height }) {
+		const visible = new Map();
+		for (const [name, body] of this.bodies) {
+			visible.set(body, body.group.visible);
+			const isWanted = name === "truth" ? document.getElementById("replay-truth").checked : names.includes(name);
+			body.group.visible = body.group.visible && isWanted;
+		}
+		this.camera.aspect = width / height;
+		this.camera.updateProjectionMatrix();
+		this.renderer.setViewport(x, y, width, height);
+		this.renderer.setScissor(x, y, width, height);
+		this.renderer.render(this.world, this.camera);
+		for (const [body, was] of visible) body.group.visible = was;
+	}
+
+	// Names stand over the views, as text that can be read and selected.
+	label(views, columns, rows, isOver) {
+		const layer = document.getElementById("replay-labels");
+		const text = (name) => [engineName(name), this.bodies.get(name).group.visible ? "" : " (not there)"];
+		const key = JSON.stringify([views, columns, rows, views.flat().map((name) => this.bodies.get(name).group.visible)]);
+		if (layer.dataset.key === key) return;
+		layer.dataset.key = key;
+		layer.replaceChildren(...views.map((names, i) => {
+			const label = element("span", {}, ...(isOver ? names.flatMap((name) => [...text(name), " "]) : text(names[0])));
+			label.style.left = 100 * (i % columns) / columns + "%";
+			label.style.top = 100 * Math.floor(i / columns) / rows + "%";
+			return label;
+		}));
+	}
+
+	play(isPlaying) {
+		this.isPlaying = isPlaying;
+		document.getElementById("replay-play").textContent = isPlaying ? "Pause" : "Play";
+		if (!isPlaying) return;
+		const end = Number(this.slider.max);
+		if (Number(this.slider.value) >= end) this.slider.value = 0;
+		let before = performance.now();
+		const step = (now) => {
+			if (!this.isPlaying) return;
+			this.slider.value = Math.min(end, Number(this.slider.value) + (now - before) / 1000);
+			before = now;
+			this.draw();
+			if (Number(this.slider.value) >= end) this.play(false);
+			else requestAnimationFrame(step);
+		};
+		requestAnimationFrame(step);
+	}
+
+	// Arrow keys turn the camera about what it looks at, + and - bring it closer.
+	turn(event) {
+		const turns = { ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1],
+			"+": [0, 0, 0.9], "-": [0, 0, 1.1] };
+		if (!turns[event.key] || !this.data) return;
+		event.preventDefault();
+		const [around, over, closer] = turns[event.key];
+		const place = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target));
+		place.theta += around;
+		place.phi += over;
+		place.radius *= closer;
+		place.makeSafe();
+		this.camera.position.setFromSpherical(place).add(this.controls.target);
+		this.controls.update();
+		this.redraw();
+	}
+}

@@ -1,0 +1,92 @@
+// A packed replay (src/replay.h) as arrays.
+
+const noPosition = 1 << 21;
+
+// Undoes the differences of one path's codes of 24 bits: to the frame before, and where it is led to the first path's.
+function unpackCodes(bytes, first, width) {
+	const count = bytes.length / 3, codes = new Uint32Array(count);
+	for (let i = 0; i < count; i++) {
+		const zigzag = bytes[i] | (bytes[count + i] << 8) | (bytes[2 * count + i] << 16);
+		let change = (zigzag >>> 1) ^ -(zigzag & 1);
+		if (first) change += first[i] - (i < width ? 0 : first[i - width]);
+		codes[i] = (change + (i < width ? 0 : codes[i - width])) & 0xffffff;
+	}
+	return codes;
+}
+
+// [frames][particles][3] m, NaN where there is no position.
+function positionsOf(codes, least, largest) {
+	const positions = new Float32Array(codes.length);
+	for (let i = 0; i < codes.length; i++) {
+		const axis = i % 3;
+		positions[i] = codes[i] === noPosition ? NaN : least[axis] + (largest[axis] - least[axis]) * (codes[i] / (noPosition - 1));
+	}
+	return positions;
+}
+
+function parseHeader(text) {
+	const header = { paths: [], planes: [], spheres: [] };
+	for (const line of text.split("\n")) {
+		const [key, ...words] = line.split(" ");
+		if (key === "path") header.paths.push(words[0]);
+		else if (key === "plane") header.planes.push(words.map(Number));
+		else if (key === "sphere") header.spheres.push(words.map(Number));
+		else if (["columns", "particles", "springs", "frames"].includes(key)) header[key] = Number(words[0]);
+	}
+	return header;
+}
+
+// {columns, particles, planes, spheres, times, springs, rests, least, largest, paths: Map of name to positions}
+function parseReplay(buffer) {
+	const bytes = new Uint8Array(buffer);
+	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 8192));
+	const headerSize = start.indexOf("\ndata\n") + "\ndata\n".length;
+	const replay = parseHeader(start.slice(0, headerSize));
+	const names = replay.paths;
+	let at = headerSize;
+	const take = (Kind, count) => {
+		const part = new Kind(buffer.slice(at, at + count * Kind.BYTES_PER_ELEMENT));
+		at += count * Kind.BYTES_PER_ELEMENT;
+		return part;
+	};
+	replay.times = take(Float32Array, replay.frames);
+	replay.springs = take(Int32Array, 2 * replay.springs);
+	replay.rests = take(Float32Array, replay.springs.length / 2);
+	replay.least = take(Float32Array, 3);
+	replay.largest = take(Float32Array, 3);
+	replay.paths = new Map();
+	const width = 3 * replay.particles, count = replay.frames * width;
+	let first = null;
+	for (const name of names) {
+		const isLed = take(Uint8Array, 1)[0] === 1;
+		const codes = unpackCodes(take(Uint8Array, 3 * count), isLed ? first : null, width);
+		first ??= codes;
+		replay.paths.set(name, positionsOf(codes, replay.least, replay.largest));
+	}
+	return replay;
+}
+
+// Positions at a time, between frames on straight lines. Into out [3·particles].
+function positionsAt(replay, path, time, out) {
+	const { times, particles } = replay, width = 3 * particles;
+	let frame = 0;
+	while (frame < times.length - 2 && times[frame + 1] <= time) frame++;
+	const next = Math.min(frame + 1, times.length - 1);
+	const share = next > frame ? Math.min(1, Math.max(0, (time - times[frame]) / (times[next] - times[frame]))) : 0;
+	for (let i = 0; i < width; i++)
+		out[i] = (1 - share) * path[frame * width + i] + (share > 0 ? share * path[next * width + i] : 0);
+}
+
+// Each particle's largest strain of its springs. Into out [particles].
+function strainsAt(replay, positions, out) {
+	const { springs, rests } = replay;
+	out.fill(0);
+	for (let i = 0; i < rests.length; i++) {
+		const a = springs[2 * i], b = springs[2 * i + 1];
+		const length = Math.hypot(positions[3 * a] - positions[3 * b], positions[3 * a + 1] - positions[3 * b + 1],
+			positions[3 * a + 2] - positions[3 * b + 2]);
+		const strain = rests[i] > 0 ? length / rests[i] - 1 : 0;
+		if (strain > out[a]) out[a] = strain;
+		if (strain > out[b]) out[b] = strain;
+	}
+}

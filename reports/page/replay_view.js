@@ -1,0 +1,127 @@
+// What is drawn of a replay: one body an engine, the truth, the colliders. Colour is strain or the engine's own.
+
+// From pale to dark red over the strain's range: lightness alone tells it, too.
+function strainColor(share, out, at) {
+	const s = Math.min(1, Math.max(0, share));
+	out[at] = 0.86 - 0.36 * s;
+	out[at + 1] = 0.84 - 0.8 * s;
+	out[at + 2] = 0.8 - 0.7 * s;
+}
+
+// Two triangles for each square of a cloth.
+function clothTriangles(replay) {
+	const { columns, particles } = replay, triangles = [];
+	for (let i = 0; columns > 1 && i + columns + 1 < particles; i++) {
+		if (i % columns === columns - 1) continue;
+		triangles.push(i, i + columns, i + 1, i + 1, i + columns, i + columns + 1);
+	}
+	return triangles;
+}
+
+// A body's geometry with room for positions and colours, shared by its surface, lines and dots.
+function bodyGeometry(replay, positions, colors, index) {
+	const geometry = new THREE.BufferGeometry();
+	geometry.setAttribute("position", positions);
+	if (colors) geometry.setAttribute("color", colors);
+	if (index) geometry.setIndex(index);
+	geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity);
+	return geometry;
+}
+
+// What of a body is drawn as lines: all its springs, and of a cloth, whose truth it is, every third row and column.
+function lineEnds(replay) {
+	const { columns, particles, springs } = replay;
+	const lastRow = columns ? particles / columns - 1 : 0;
+	const isKept = (place, last) => place % 3 === 0 || place === last;
+	const kept = [];
+	for (let i = 0; i < springs.length; i += 2) {
+		const row = Math.floor(springs[i] / columns), column = springs[i] % columns;
+		const isAcross = springs[i + 1] === springs[i] + 1;
+		if (!columns || (isAcross ? isKept(row, lastRow) : isKept(column, columns - 1))) kept.push(springs[i], springs[i + 1]);
+	}
+	return kept;
+}
+
+// {group, positions, colors}: changed by showBody. A cloth is a surface, its truth and all other bodies are lines: many
+// lines are what drawing without a graphics processor spends its time on.
+function makeBody(replay, ghost) {
+	const positions = new THREE.BufferAttribute(new Float32Array(3 * replay.particles), 3);
+	const colors = ghost ? null : new THREE.BufferAttribute(new Float32Array(3 * replay.particles), 3);
+	const look = ghost ? { color: 0x555555, transparent: true, opacity: 0.45 } : { vertexColors: THREE.VertexColors };
+	const group = new THREE.Group();
+	const triangles = clothTriangles(replay);
+	const isSurface = triangles.length > 0 && !ghost;
+	if (isSurface) {
+		const surface = new THREE.MeshBasicMaterial({ ...look, side: THREE.DoubleSide, polygonOffset: true,
+			polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+		group.add(new THREE.Mesh(bodyGeometry(replay, positions, colors, triangles), surface));
+	}
+	if (replay.springs.length && !isSurface)
+		group.add(new THREE.LineSegments(bodyGeometry(replay, positions, colors, lineEnds(replay)), new THREE.LineBasicMaterial(look)));
+	if (replay.particles <= 64)
+		group.add(new THREE.Points(bodyGeometry(replay, positions, colors), new THREE.PointsMaterial({ ...look, size: 6, sizeAttenuation: false })));
+	return { group, positions, colors };
+}
+
+// Darkens what turns away from a light beside the camera's first place, so that folds show.
+function shadeCloth(replay, at, colors) {
+	const { columns, particles } = replay;
+	for (let i = 0; columns > 1 && i < particles; i++) {
+		const across = i % columns === columns - 1 ? i - 1 : i, down = i + columns < particles ? i : i - columns;
+		const [ax, ay, az] = [0, 1, 2].map((axis) => at[3 * (across + 1) + axis] - at[3 * across + axis]);
+		const [dx, dy, dz] = [0, 1, 2].map((axis) => at[3 * (down + columns) + axis] - at[3 * down + axis]);
+		const nx = ay * dz - az * dy, ny = az * dx - ax * dz, nz = ax * dy - ay * dx;
+		const light = Math.abs(0.3 * nx + 0.5 * ny + 0.81 * nz) / (Math.hypot(nx, ny, nz) || 1);
+		for (let axis = 0; axis < 3; axis++) colors[3 * i + axis] *= 0.55 + 0.45 * light;
+	}
+}
+
+function paintBody(replay, body, strains, range, engine) {
+	const out = body.colors.array;
+	if (engine) {
+		const color = new THREE.Color(engine);
+		for (let i = 0; i < replay.particles; i++) color.toArray(out, 3 * i);
+	} else {
+		strainsAt(replay, body.positions.array, strains);
+		for (let i = 0; i < replay.particles; i++) strainColor(strains[i] / range, out, 3 * i);
+	}
+	shadeCloth(replay, body.positions.array, out);
+	body.colors.needsUpdate = true;
+}
+
+// Moves a body to a time; false where the run had ended or flown off, and the body is hidden.
+function showBody(replay, body, path, time) {
+	positionsAt(replay, path, time, body.positions.array);
+	body.group.visible = !body.positions.array.some(Number.isNaN);
+	body.positions.needsUpdate = true;
+	return body.group.visible;
+}
+
+function makeColliders(replay) {
+	const group = new THREE.Group();
+	const size = Math.max(...[0, 1, 2].map((axis) => replay.largest[axis] - replay.least[axis]));
+	for (const [x, y, z, radius] of replay.spheres) {
+		const ball = new THREE.Mesh(new THREE.SphereGeometry(radius, 24, 16),
+			new THREE.MeshBasicMaterial({ color: 0x9aa7b5, wireframe: true, transparent: true, opacity: 0.5 }));
+		ball.position.set(x, y, z);
+		group.add(ball);
+	}
+	for (const [x, y, z, nx, ny, nz] of replay.planes) {
+		const grid = new THREE.GridHelper(2 * size, 20, 0xb0b8c0, 0xd5dae0);
+		grid.position.set(x, y, z);
+		grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(nx, ny, nz));
+		group.add(grid);
+	}
+	return group;
+}
+
+// The least and largest corner of where paths go: what the camera looks at.
+function boundsOf(replay, names) {
+	const box = new THREE.Box3(), point = new THREE.Vector3();
+	for (const name of names) {
+		const path = replay.paths.get(name), stride = 3 * Math.max(1, Math.floor(path.length / 3 / 20000));
+		for (let i = 0; i < path.length; i += stride)
+			if (!Number.isNaN(path[i])) box.expandByPoint(point.set(path[i], path[i + 1], path[i + 2]));
+	}
+	return box;
+}

@@ -1,0 +1,58 @@
+// The charts of a report: each a row of a table, a function that selects its numbers from the CSVs, and a gnuplot
+// script of its name in reports/charts/.
+#ifndef CK_CHART_H
+#define CK_CHART_H
+
+#include "report_data.h"
+
+#include <stdio.h>
+
+#define CK_CHART_DIRECTORY "charts"
+
+typedef struct ck_Chart {
+    const char *name;
+    const char *title;   // what it shows
+    const char *columns; // of its own CSV, which the script reads
+    int width, height;   // px
+    bool is_of_all;      // one for all scenes, named as the chart is; else one a scene, SCENE.NAME
+    // Writes the chart's rows, of a scene where it is not of all. Returns how many; 0: there is nothing to show.
+    int (*select)(const ck_ReportData *data, const char *scene, FILE *out);
+} ck_Chart;
+
+int ck_chart_count(void);
+const ck_Chart *ck_chart_at(int index);
+
+// The name of a chart's files without their ending, into name. scene may be NULL for one of all.
+void ck_chart_file(char *name, size_t size, const ck_Chart *chart, const char *scene);
+
+// How an engine looks in every chart: colour, mark and dashes by its place in data->engines.
+typedef struct ck_Look {
+    const char *color; // #rrggbb
+    int mark;          // gnuplot's point type
+    const char *sign;  // the same as a character
+    const char *dash;  // gnuplot's dash type
+} ck_Look;
+ck_Look ck_chart_look(int engine);
+
+// Draws all charts that there are numbers for, as SVG and PNG with their numbers beside them, into directory, which is
+// made. drawn gets [scene_count + 1][chart count], row scene_count for those of all.
+//   sources  directory that holds the scripts, charts/NAME.gp
+// Errors: CK_IO with what gnuplot says, CK_NO_MEMORY.
+ck_Status ck_charts_draw(const ck_ReportData *data, const char *directory, const char *sources, bool *drawn,
+                         ck_Error *error);
+
+// Selections, by the CSVs that they are made of.
+int ck_chart_select_summary(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_cost(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_deviations(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_sag(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_energy(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_height(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_iterations(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_needs(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_size(const ck_ReportData *data, const char *scene, FILE *out);
+
+#endif

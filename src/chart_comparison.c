@@ -1,0 +1,138 @@
+// Charts of a comparison's CSVs.
+#include "chart.h"
+
+#include <math.h>
+#include <string.h>
+
+// An error that is nothing has its place at the foot of a logarithmic axis.
+#define LEAST_ERROR 1e-16
+#define MOST_TIMES 240
+
+static bool is_of(const ck_CsvTable *table, int row, const char *scene) {
+    return !strcmp(ck_csv_table_text(table, row, 0), scene);
+}
+
+// null moves nothing, which is of no interest beside what the others do.
+static bool is_shown(const char *engine) {
+    return strcmp(engine, "null") != 0;
+}
+
+static double on_axis(double error) {
+    return fmax(error, LEAST_ERROR);
+}
+
+// scene, engine, status, class of error, mark of the cheapest within 1 %. Classes: 0 within 0.1 %, 1 within 1 %, 2
+// within 10 %, 3 beyond, 4 no error known, 5 failed, 6 not to be had.
+static int class_of(const ck_Summary *one) {
+    if (!strcmp(one->status, "unsupported") || !strcmp(one->status, "refused")) return 6;
+    if (strcmp(one->status, "ok")) return 5;
+    if (isnan(one->error)) return 4;
+    return one->error <= 1e-3 ? 0 : one->error <= 1e-2 ? 1 : one->error <= 1e-1 ? 2 : 3;
+}
+
+static bool is_cheapest(const ck_ReportData *data, const ck_Summary *one) {
+    for (int i = 0; i < data->summary_count; i++) {
+        const ck_Summary *other = &data->summary[i];
+        if (!strcmp(other->scene, one->scene) && is_shown(other->engine) && class_of(other) <= 1 &&
+            other->cost < one->cost)
+            return false;
+    }
+    return class_of(one) <= 1 && !isnan(one->cost) && is_shown(one->engine);
+}
+
+int ck_chart_select_summary(const ck_ReportData *data, const char *scene, FILE *out) {
+    (void)scene;
+    for (int i = 0; i < data->summary_count; i++) {
+        const ck_Summary *one = &data->summary[i];
+        fprintf(out, "%s,%s,%s,%s,%.9g,%.9g,%.9g,%d,%d,%d\n", one->scene, one->engine, one->status, one->metric,
+                one->error, one->uncertainty, 1e3 * one->cost, class_of(one), is_cheapest(data, one), one->on_front);
+    }
+    return data->summary_count;
+}
+
+int ck_chart_select_cost(const ck_ReportData *data, const char *scene, FILE *out) {
+    int rows = 0;
+    for (int i = 0; i < data->summary_count; i++) {
+        const ck_Summary *one = &data->summary[i];
+        if (strcmp(one->scene, scene) || !is_shown(one->engine) || isnan(one->error) || isnan(one->cost)) continue;
+        fprintf(out, "%s,%.9g,%.9g,%.9g,%d,%s,%s\n", one->engine, 1e3 * one->cost, on_axis(one->error),
+                one->uncertainty, one->on_front, one->metric, one->status);
+        rows++;
+    }
+    return rows;
+}
+
+// Errors of what a run ends in, not of what is only ever small.
+static bool is_answer(const char *metric) {
+    static const char *const shown[] = {"position_rms",  "sag",          "stretch_max", "stretch_rms",
+                                        "sag_path",      "energy_path",  "period",      "restitution",
+                                        "rest_height",   "friction",     "tunnelled",   "penetration_max",
+                                        "wrap_friction", "contact_force"};
+    for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
+        if (!strcmp(shown[i], metric)) return true;
+    return false;
+}
+
+int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *out) {
+    const ck_CsvTable *metrics = ck_report_table(data, CK_METRICS);
+    int rows = 0;
+    for (int row = 0; metrics && row < metrics->row_count; row++) {
+        const char *metric = ck_csv_table_text(metrics, row, 2);
+        double error = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error"));
+        if (!is_of(metrics, row, scene) || !is_shown(ck_csv_table_text(metrics, row, 1)) || !is_answer(metric) ||
+            isnan(error))
+            continue;
+        double uncertainty = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "truth_uncertainty"));
+        fprintf(out, "%s,%s,%.9g,%.9g\n", ck_csv_table_text(metrics, row, 1), metric, on_axis(error), uncertainty);
+        rows++;
+    }
+    return rows;
+}
+
+// The distance of paths, both ways round: a matrix.
+int ck_chart_select_deviations(const ck_ReportData *data, const char *scene, FILE *out) {
+    const ck_CsvTable *table = ck_report_table(data, CK_DEVIATIONS);
+    int rows = 0;
+    for (int row = 0; table && row < table->row_count; row++) {
+        if (!is_of(table, row, scene) || strcmp(ck_csv_table_text(table, row, 1), "position_rms")) continue;
+        const char *one = ck_csv_table_text(table, row, 2), *other = ck_csv_table_text(table, row, 3);
+        if (!is_shown(one) || !is_shown(other)) continue;
+        double deviation = ck_csv_table_number(table, row, ck_layout_column(table->layout, "deviation"));
+        fprintf(out, "%s,%s,%.9g\n%s,%s,%.9g\n", one, other, deviation, other, one, deviation);
+        rows += 2;
+    }
+    return rows;
+}
+
+// One metric over time; of long series every k-th frame, for a chart has no more dots.
+static int select_series(const ck_ReportData *data, const char *scene, const char *metric, FILE *out) {
+    const ck_CsvTable *table = ck_report_table(data, CK_SERIES);
+    int rows = 0;
+    for (int row = 0; table && row < table->row_count;) {
+        const char *engine = ck_csv_table_text(table, row, 1);
+        int end = row;
+        while (end < table->row_count && is_of(table, end, scene) &&
+               !strcmp(ck_csv_table_text(table, end, 3), metric) && !strcmp(ck_csv_table_text(table, end, 1), engine))
+            end++;
+        int stride = (end - row + MOST_TIMES - 1) / MOST_TIMES;
+        for (int i = row; i < end; i++) {
+            if (!is_shown(engine) || ((i - row) % stride && i != end - 1)) continue;
+            fprintf(out, "%s,%.9g,%.9g\n", engine, ck_csv_table_number(table, i, 2), ck_csv_table_number(table, i, 4));
+            rows++;
+        }
+        row = end > row ? end : row + 1;
+    }
+    return rows;
+}
+
+int ck_chart_select_sag(const ck_ReportData *data, const char *scene, FILE *out) {
+    return select_series(data, scene, "sag", out);
+}
+
+int ck_chart_select_energy(const ck_ReportData *data, const char *scene, FILE *out) {
+    return select_series(data, scene, "energy", out);
+}
+
+int ck_chart_select_height(const ck_ReportData *data, const char *scene, FILE *out) {
+    return select_series(data, scene, "rest_height", out);
+}

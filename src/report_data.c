@@ -1,0 +1,179 @@
+#include "report_data.h"
+
+#include "engine.h"
+#include "path.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// What stands for a scene's error: the first of these that has a truth. Energy, jitter and the like are no answers.
+static const char *const answers[] = {"position_rms",  "sag",           "friction",  "restitution",    "rest_height",
+                                      "wrap_friction", "contact_force", "tunnelled", "penetration_max"};
+#define ANSWERS ((int)(sizeof answers / sizeof *answers))
+
+const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name) {
+    return data->tables[name].layout ? &data->tables[name] : NULL;
+}
+
+int ck_report_engine(const ck_ReportData *data, const char *engine) {
+    int index = 0;
+    while (index < data->engine_count && strcmp(data->engines[index], engine)) index++;
+    return index;
+}
+
+// Adds a name that is not among them. Errors: CK_NO_MEMORY.
+static ck_Status add_name(const char ***names, int *count, const char *name, ck_Error *error) {
+    for (int i = *count - 1; i >= 0; i--)
+        if (!strcmp((*names)[i], name)) return CK_OK;
+    const char **more = realloc(*names, sizeof *more * (size_t)(*count + 1));
+    if (!more) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *names = more;
+    more[(*count)++] = name;
+    return CK_OK;
+}
+
+// Scenes and engines are parts of file names and of charts.
+static bool is_plain(const char *name) {
+    for (const char *letter = name; *letter; letter++)
+        if (!isalnum((unsigned char)*letter) && !strchr("_-.", *letter)) return false;
+    return *name != '.';
+}
+
+static ck_Status add_column(ck_ReportData *data, const ck_CsvTable *table, const char *column_name, const char ***names,
+                            int *count, ck_Error *error) {
+    int column = 0;
+    while (column < table->column_count && strcmp(table->layout->columns[column].name, column_name)) column++;
+    if (column == table->column_count) return CK_OK;
+    ck_Status status = CK_OK;
+    for (int row = 0; row < table->row_count && !status; row++) {
+        const char *name = ck_csv_table_text(table, row, column);
+        if (row && !strcmp(name, ck_csv_table_text(table, row - 1, column))) continue;
+        if (!*name || !strcmp(name, "truth")) continue;
+        if (!is_plain(name))
+            return ck_fail(error, CK_BAD_INPUT,
+                           "%s/%s: row %d, column %d (%s): '%.60s' must be of letters, digits, _, - and .",
+                           data->directory, table->layout->file, row + 1, column + 1, column_name, name);
+        status = add_name(names, count, name, error);
+    }
+    return status;
+}
+
+static ck_Status read_tables(ck_ReportData *data, ck_Error *error) {
+    ck_Status status = CK_OK;
+    int found = 0;
+    for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++) {
+        char *path = ck_path_join(data->directory, ck_layouts[i].file);
+        if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+        bool is_there = access(path, F_OK) == 0;
+        free(path);
+        if (!is_there) continue;
+        status = ck_csv_table_read(&data->tables[i], data->directory, &ck_layouts[i], error);
+        found += i != CK_MACHINE;
+    }
+    if (!status && !found)
+        status = ck_fail(error, CK_BAD_INPUT,
+                         "%s: holds no CSV of a comparison or study, as %s; 'clothcheck compare --out %s' writes them",
+                         data->directory, ck_layouts[CK_RUNS].file, data->directory);
+    return status;
+}
+
+static ck_Status find_names(ck_ReportData *data, ck_Error *error) {
+    ck_Status status = CK_OK;
+    for (int i = 0; i < ck_engine_count() && !status; i++)
+        status = add_name(&data->engines, &data->engine_count, ck_engine_at(i)->name, error);
+    for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++) {
+        const ck_CsvTable *table = ck_report_table(data, i);
+        if (!table) continue;
+        status = add_column(data, table, "scene", &data->scenes, &data->scene_count, error);
+        if (!status) status = add_column(data, table, "engine", &data->engines, &data->engine_count, error);
+    }
+    return status;
+}
+
+// The row of metrics.csv that stands for an engine's error on a scene; -1: none.
+static int find_answer(const ck_CsvTable *metrics, const char *scene, const char *engine) {
+    const int error = ck_layout_column(metrics->layout, "error");
+    int found = -1, rank = ANSWERS;
+    for (int row = 0; row < metrics->row_count; row++) {
+        if (strcmp(ck_csv_table_text(metrics, row, 0), scene) || strcmp(ck_csv_table_text(metrics, row, 1), engine))
+            continue;
+        for (int i = 0; i < rank; i++)
+            if (!strcmp(ck_csv_table_text(metrics, row, 2), answers[i]) &&
+                !isnan(ck_csv_table_number(metrics, row, error))) {
+                found = row;
+                rank = i;
+            }
+    }
+    return found;
+}
+
+static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
+    const ck_CsvTable *metrics = ck_report_table(data, CK_METRICS);
+    const ck_Layout *layout = runs->layout;
+    ck_Summary one = {
+        .scene = ck_csv_table_text(runs, row, 0),
+        .engine = ck_csv_table_text(runs, row, 1),
+        .status = ck_csv_table_text(runs, row, ck_layout_column(layout, "status")),
+        .metric = "",
+        .error = NAN,
+        .uncertainty = NAN,
+        .cost = ck_csv_table_number(runs, row, ck_layout_column(layout, "cpu_median_s")) /
+                ck_csv_table_number(runs, row, ck_layout_column(layout, "simulated_s")),
+    };
+    int answer = metrics ? find_answer(metrics, one.scene, one.engine) : -1;
+    if (answer < 0) return one;
+    one.metric = ck_csv_table_text(metrics, answer, 2);
+    one.error = ck_csv_table_number(metrics, answer, ck_layout_column(metrics->layout, "error"));
+    one.uncertainty = ck_csv_table_number(metrics, answer, ck_layout_column(metrics->layout, "truth_uncertainty"));
+    return one;
+}
+
+// Errors that the truth cannot tell apart are alike.
+static double told_error(const ck_Summary *one) {
+    return fmax(one->error, isnan(one->uncertainty) ? 0 : one->uncertainty);
+}
+
+// null moves nothing: it shows what the harness costs.
+static bool is_candidate(const ck_Summary *one) {
+    return strcmp(one->engine, "null") && !strcmp(one->status, "ok") && !isnan(one->error) && !isnan(one->cost);
+}
+
+static bool is_beaten(const ck_ReportData *data, const ck_Summary *one) {
+    for (int i = 0; i < data->summary_count; i++) {
+        const ck_Summary *other = &data->summary[i];
+        if (other != one && is_candidate(other) && !strcmp(other->scene, one->scene) && other->cost < one->cost &&
+            told_error(other) <= told_error(one))
+            return true;
+    }
+    return false;
+}
+
+static ck_Status find_summary(ck_ReportData *data, ck_Error *error) {
+    const ck_CsvTable *runs = ck_report_table(data, CK_RUNS);
+    if (!runs) return CK_OK;
+    data->summary = calloc((size_t)runs->row_count + 1, sizeof *data->summary);
+    if (!data->summary) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int row = 0; row < runs->row_count; row++) data->summary[data->summary_count++] = sum_up(data, runs, row);
+    for (int i = 0; i < data->summary_count; i++)
+        data->summary[i].on_front = is_candidate(&data->summary[i]) && !is_beaten(data, &data->summary[i]);
+    return CK_OK;
+}
+
+ck_Status ck_report_data_read(ck_ReportData *data, const char *directory, ck_Error *error) {
+    *data = (ck_ReportData){.directory = directory};
+    ck_Status status = read_tables(data, error);
+    if (!status) status = find_names(data, error);
+    if (!status) status = find_summary(data, error);
+    return status;
+}
+
+void ck_report_data_free(ck_ReportData *data) {
+    for (int i = 0; i < CK_REPORT_LAYOUTS; i++) ck_csv_table_free(&data->tables[i]);
+    free(data->scenes);
+    free(data->engines);
+    free(data->summary);
+    *data = (ck_ReportData){0};
+}

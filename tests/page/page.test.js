@@ -1,0 +1,242 @@
+// The report's page in a real browser, opened from disk. Makes a report of its own with the program, and of its CSVs
+// another one in which an engine aborted.
+//   CLOTHCHECK, CHROMIUM  programs;  SOURCES  the source tree;  SCREENSHOTS  where pictures are kept
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { chromium } from "playwright-core";
+
+const { CLOTHCHECK, CHROMIUM, SOURCES, SCREENSHOTS } = process.env;
+const axeSource = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const aborted = "signal 6, Aborted: the solver's own last words, at t = 0.5 s";
+const run = (...words) => execFileSync(CLOTHCHECK, words, { cwd: SOURCES, encoding: "utf8" });
+
+let directory, browser, page;
+const told = [];
+
+// A row of a CSV without quoted commas, as {column: text}.
+function csvRows(file) {
+	const [header, ...lines] = readFileSync(join(directory, file), "utf8").trim().split("\n");
+	const columns = header.split(",");
+	return lines.map((line) => {
+		const fields = [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map((match) => match[1]?.replaceAll('""', '"') ?? match[2]);
+		return Object.fromEntries(columns.map((column, i) => [column, fields[i]]));
+	});
+}
+
+// ode-direct cannot finish the cloth in five seconds, seed-tecido does not model springs, and one run is made to abort.
+function makeReport() {
+	directory = mkdtempSync(join(tmpdir(), "clothcheck-page-"));
+	const engines = ["native-verlet", "native-bars", "native-xpbd", "bullet-pbd", "ode-direct", "seed-tecido", "null"];
+	run("compare", "cloth_two_corners", "bounce", "rope_hanging", ...engines.flatMap((name) => ["--engine", name]),
+		"--repeats", "1", "--time-limit", "5", "--out", directory);
+	const runs = readFileSync(join(directory, "runs.csv"), "utf8");
+	const changed = runs.replace(/^(bounce,bullet-pbd,)ok,[^,]*,/m, `$1aborted,"${aborted}",`);
+	assert.notEqual(changed, runs);
+	writeFileSync(join(directory, "runs.csv"), changed);
+	run("report", directory);
+}
+
+before(async () => {
+	makeReport();
+	browser = await chromium.launch({
+		executablePath: CHROMIUM,
+		args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
+			"--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"],
+	});
+	page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+	page.on("console", (message) => told.push(`${message.type()}: ${message.text()}`));
+	page.on("pageerror", (error) => told.push(`error: ${error.message}`));
+	page.on("request", (request) => {
+		const url = request.url();
+		if (!/^(data|blob):/.test(url) && url !== `file://${directory}/index.html`) told.push(`request: ${url}`);
+	});
+	await page.goto(`file://${directory}/index.html`);
+	await page.waitForFunction(() => document.body.dataset.ready === "yes");
+});
+
+after(async () => {
+	await browser?.close();
+	rmSync(directory, { recursive: true, force: true });
+});
+
+async function screenshot(name) {
+	if (!SCREENSHOTS) return;
+	mkdirSync(SCREENSHOTS, { recursive: true });
+	await page.screenshot({ path: join(SCREENSHOTS, `${name}.png`) });
+}
+
+test("the first screen answers which solver, and at what cost", async () => {
+	const summary = csvRows("charts/summary.csv").filter((row) =>
+		row.scene === "cloth_two_corners" && row.status === "ok" && row.engine !== "null" && Number(row.error) <= 0.01);
+	const best = summary.sort((a, b) => Number(a.cpu_ms_per_s) - Number(b.cpu_ms_per_s))[0];
+	assert.equal(await page.inputValue("#answer-scene"), "cloth_two_corners");
+	const answer = page.locator("#answer-text");
+	assert.equal(await answer.locator("strong").textContent(), best.engine);
+	assert.ok((await answer.boundingBox()).y < 400);
+	const cost = await page.locator("#answer-table tbody tr").first().locator("td").nth(3).getAttribute("data-value");
+	assert.equal(Number(cost), Number(best.cpu_ms_per_s));
+	await screenshot("first");
+});
+
+test("a stricter error excludes engines", async () => {
+	const within = () => page.locator("#answer-table td[data-value=yes]").count();
+	const before = await within();
+	await page.selectOption("#answer-error", "0.0001");
+	await page.waitForFunction((count) => document.querySelectorAll("#answer-table td[data-value=yes]").length < count, before);
+	await page.selectOption("#answer-error", "0.01");
+});
+
+test("the summary holds the numbers of the CSVs", async () => {
+	for (const row of csvRows("charts/summary.csv")) {
+		const cell = page.locator(`#summary-table tr:has(a:text-is("${row.scene}")) td[data-engine="${row.engine}"]`);
+		assert.equal(await cell.getAttribute("data-error"), row.error);
+		assert.equal(await cell.getAttribute("data-cost"), row.cpu_ms_per_s);
+		assert.equal(await cell.getAttribute("data-status"), row.status);
+	}
+});
+
+test("aborted, timed out and unsupported runs are there with reason and command", async () => {
+	const text = await page.locator("#failures-table").innerText();
+	for (const { scene, engine, status, reason, command } of csvRows("runs.csv")) {
+		if (status === "ok") continue;
+		for (const word of [scene, engine, status, reason, command]) assert.ok(text.includes(word), word);
+	}
+	for (const word of ["aborted", aborted, "timed_out", "after the limit of 5 s", "unsupported"]) assert.ok(text.includes(word), word);
+});
+
+test("tables of a scene hold its rows, and are sorted by a click", async () => {
+	await page.selectOption("#scene-select", "rope_hanging");
+	const details = page.locator('details[data-file="metrics.csv"]');
+	await details.waitFor();
+	await details.locator("summary").click();
+	const wanted = csvRows("metrics.csv").filter((row) => row.scene === "rope_hanging");
+	const column = (index) => details.locator(`tbody td:nth-child(${index})`).evaluateAll((cells) => cells.map((cell) => cell.dataset.value));
+	assert.deepEqual(await column(4), wanted.map((row) => row.value));
+	assert.deepEqual(await column(8), wanted.map((row) => row.error));
+	await details.locator("th button", { hasText: /^value$/ }).click();
+	const sorted = (await column(4)).filter((text) => text !== "").map(Number);
+	assert.deepEqual(sorted, [...sorted].sort((a, b) => a - b));
+	await details.locator("summary").click();
+});
+
+test("the replay holds the runs' positions", async () => {
+	const file = readFileSync(join(directory, "replays/cloth_two_corners.replay"));
+	const headerSize = file.indexOf("\ndata\n") + "\ndata\n".length;
+	const header = file.subarray(0, headerSize).toString();
+	const count = (word) => Number(header.match(new RegExp(`^${word} (\\d+)$`, "m"))[1]);
+	const names = [...header.matchAll(/^path (\S+)$/gm)].map((match) => match[1]);
+	const [particles, frames] = [count("particles"), count("frames")];
+	const start = headerSize + 4 * frames + 12 * count("springs");
+	const unpacked = await page.evaluate(async () => {
+		const replay = parseReplay(await fileBytes("cloth_two_corners.replay"));
+		return { names: [...replay.paths.keys()], paths: [...replay.paths.values()].map((path) => [...path]),
+			quantum: Math.max(...[0, 1, 2].map((axis) => replay.largest[axis] - replay.least[axis])) / (1 << 21) };
+	});
+	assert.deepEqual(unpacked.names, names);
+	// half a quantum of the packing, and the rounding of float32
+	const bound = 0.5 * unpacked.quantum + 2 ** -22;
+	names.forEach((name, i) => {
+		for (let k = 0; k < 3 * particles * frames; k++) {
+			const at = file.readFloatLE(start + 4 * (i * 3 * particles * frames + k));
+			assert.ok(Number.isNaN(at) ? Number.isNaN(unpacked.paths[i][k]) : Math.abs(at - unpacked.paths[i][k]) <= bound, `${name} ${k}`);
+		}
+	});
+});
+
+// What the replay shows, and how many of its pixels are not paper.
+async function picture() {
+	await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+	const png = (await page.locator("#replay-canvas").screenshot()).toString("base64");
+	const inked = await page.evaluate(async (text) => {
+		const image = new Image();
+		image.src = `data:image/png;base64,${text}`;
+		await image.decode();
+		const copy = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
+		copy.getContext("2d").drawImage(image, 0, 0);
+		const { data } = copy.getContext("2d").getImageData(0, 0, copy.width, copy.height);
+		return data.filter((value, i) => i % 4 === 0 && value < 240).length;
+	}, png);
+	return { png, inked };
+}
+
+test("the slider moves the cloths, the mouse and the keys turn them", async () => {
+	await page.selectOption("#scene-select", "cloth_two_corners");
+	await page.waitForFunction(() => document.querySelectorAll("#replay-engines input").length === 6);
+	await page.locator("#replay-canvas").scrollIntoViewIfNeeded();
+	const slider = page.locator("#replay-time");
+	const pictures = [];
+	const look = async () => pictures.push(await picture());
+	await look();
+	await slider.evaluate((input) => { input.value = 0.5; input.dispatchEvent(new Event("input")); });
+	await look();
+	assert.match(await page.locator("#replay-now").textContent(), /^0\.500 s$/);
+	const box = await page.locator("#replay-canvas").boundingBox();
+	await page.mouse.move(box.x + 300, box.y + 200);
+	await page.mouse.down();
+	await page.mouse.move(box.x + 420, box.y + 240, { steps: 4 });
+	await page.mouse.up();
+	await look();
+	await page.locator("#replay-canvas").focus();
+	await page.keyboard.press("ArrowLeft");
+	await look();
+	await page.selectOption("#replay-color", "engine");
+	await look();
+	await page.selectOption("#replay-layout", "over");
+	await look();
+	assert.equal(new Set(pictures.map(({ png }) => png)).size, pictures.length);
+	for (const { inked } of pictures) assert.ok(inked > 2000);
+	await page.selectOption("#replay-layout", "side");
+	await page.selectOption("#replay-color", "strain");
+	await picture();
+	await screenshot("replay");
+});
+
+test("playing moves the time to its end", async () => {
+	await page.locator("#replay-time").evaluate((input) => { input.value = input.max - 0.2; });
+	await page.click("#replay-play");
+	await page.waitForFunction(() => document.getElementById("replay-play").textContent === "Play");
+	assert.equal(await page.locator("#replay-time").evaluate((input) => input.value === input.max), true);
+});
+
+test("a packed CSV is saved from the page as it was", async () => {
+	const [download] = await Promise.all([page.waitForEvent("download"), page.click('#download-list a:text-is("runs.csv")')]);
+	assert.deepEqual(readFileSync(await download.path()), readFileSync(join(directory, "runs.csv")));
+});
+
+test("everything is reached by keyboard, and axe finds nothing", async () => {
+	await page.evaluate(() => document.activeElement.blur());
+	const reached = new Set();
+	for (let i = 0; i < 200; i++) {
+		await page.keyboard.press("Tab");
+		reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.tagName));
+	}
+	for (const id of ["answer-scene", "answer-error", "scene-select", "replay-play", "replay-time", "replay-canvas", "SUMMARY"])
+		assert.ok(reached.has(id), id);
+	await page.evaluate(axeSource);
+	const { violations } = await page.evaluate(() => axe.run(document));
+	assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`), []);
+});
+
+test("a page of a study alone opens, too", async () => {
+	const study = mkdtempSync(join(tmpdir(), "clothcheck-study-"));
+	cpSync(join(directory, "machine.csv"), join(study, "machine.csv"));
+	run("stability", "rope_hanging", "--engine", "native-verlet", "--out", study);
+	run("report", study);
+	const other = await browser.newPage();
+	const errors = [];
+	other.on("pageerror", (error) => errors.push(error.message));
+	await other.goto(`file://${study}/index.html`);
+	await other.waitForFunction(() => document.body.dataset.ready === "yes");
+	assert.equal(await other.locator('figure[data-chart="stability"] img').count(), 1);
+	assert.equal(await other.locator("#answer").isHidden(), true);
+	assert.deepEqual(errors, []);
+	await other.close();
+	rmSync(study, { recursive: true });
+});
+
+test("nothing was fetched, and the console is empty", () => assert.deepEqual(told, []));
