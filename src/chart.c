@@ -1,6 +1,6 @@
 #include "chart.h"
 
-#include "engine.h"
+#include "child.h"
 #include "path.h"
 
 #include <errno.h>
@@ -122,6 +122,7 @@ static ck_Status run_gnuplot(const char *directory, ck_Error *error) {
         return ck_fail(error, CK_IO, "gnuplot cannot be started: %s", strerror(errno));
     if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
         return ck_fail(error, CK_IO, "gnuplot is not there; charts need Debian's package gnuplot-nox or its like");
+    if (ck_child_interrupted) return ck_fail(error, CK_IO, "interrupted; no report was written");
     if (WIFEXITED(state) && !WEXITSTATUS(state)) return CK_OK;
     char *path = ck_path_join(directory, "gnuplot.log"), *text = NULL;
     size_t size;

@@ -14,6 +14,7 @@ int ck_command_report(int argc, char **argv) {
         return asks_help ? CK_EXIT_OK : CK_EXIT_USAGE;
     }
     ck_Error error = {0};
+    ck_command_catch_signals();
     ck_Status status = ck_report_write(argv[1], &error);
     if (status) return ck_command_fail(status, &error);
     printf("%s/index.html\n", argv[1]);
