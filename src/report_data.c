@@ -9,9 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-// What stands for a scene's error: the first of these that has a truth. Energy, jitter and the like are no answers.
-static const char *const answers[] = {"position_rms",  "sag",           "friction",  "restitution",    "rest_height",
-                                      "wrap_friction", "contact_force", "tunnelled", "penetration_max"};
+// What stands for a scene's error: of these the one that most engines have an error of, the first where several do.
+// Energy, jitter and the like are no answers.
+static const char *const answers[] = {"position_rms",  "sag",           "friction",        "restitution", "rest_height",
+                                      "wrap_friction", "contact_force", "penetration_max", "tunnelled"};
 #define ANSWERS ((int)(sizeof answers / sizeof *answers))
 
 const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name) {
@@ -93,21 +94,29 @@ static ck_Status find_names(ck_ReportData *data, ck_Error *error) {
     return status;
 }
 
-// The row of metrics.csv that stands for an engine's error on a scene; -1: none.
-static int find_answer(const ck_CsvTable *metrics, const char *scene, const char *engine) {
-    const int error = ck_layout_column(metrics->layout, "error");
-    int found = -1, rank = ANSWERS;
-    for (int row = 0; row < metrics->row_count; row++) {
-        if (strcmp(ck_csv_table_text(metrics, row, 0), scene) || strcmp(ck_csv_table_text(metrics, row, 1), engine))
-            continue;
-        for (int i = 0; i < rank; i++)
-            if (!strcmp(ck_csv_table_text(metrics, row, 2), answers[i]) &&
-                !isnan(ck_csv_table_number(metrics, row, error))) {
-                found = row;
-                rank = i;
-            }
+static bool has_error(const ck_CsvTable *metrics, int row, const char *scene, const char *metric) {
+    return !strcmp(ck_csv_table_text(metrics, row, 0), scene) && !strcmp(ck_csv_table_text(metrics, row, 2), metric) &&
+           !isnan(ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error")));
+}
+
+// The metric that stands for a scene's error; NULL: nothing has a truth.
+static const char *answer_of(const ck_CsvTable *metrics, const char *scene) {
+    const char *answer = NULL;
+    for (int i = 0, most = 0; i < ANSWERS; i++) {
+        int count = 0;
+        for (int row = 0; row < metrics->row_count; row++) count += has_error(metrics, row, scene, answers[i]);
+        if (count > most) answer = answers[i];
+        if (count > most) most = count;
     }
-    return found;
+    return answer;
+}
+
+// Its row of an engine; -1: none.
+static int find_answer(const ck_CsvTable *metrics, const char *scene, const char *engine) {
+    const char *answer = answer_of(metrics, scene);
+    for (int row = 0; row < metrics->row_count && answer; row++)
+        if (has_error(metrics, row, scene, answer) && !strcmp(ck_csv_table_text(metrics, row, 1), engine)) return row;
+    return -1;
 }
 
 static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
