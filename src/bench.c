@@ -50,6 +50,7 @@ static const Candidate candidates[] = {
     [VERLET_2] = {"native-verlet", "2 threads", {.threads = 2}, VERLET},
     [BARS_2] = {"native-bars", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, BARS},
     [XPBD_2] = {"native-xpbd", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, XPBD},
+    {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
     {"native-rope", "4 iterations", {.iterations = 4}, BARS},
     {"seed-tecido", "10 iterations", {.iterations = 10}, BARS},
     {"seed-cloth", "", {0}, VERLET},

@@ -12,7 +12,7 @@
 typedef struct ck_Limits {
     double seconds;      // of wall time
     size_t memory_bytes; // of resident memory; 0: none
-    bool foresees;       // a run whose frames so far say that it will take more than twice the time ends at once
+    bool foresees;       // a run whose frames so far say that it will take half as long again ends at once
 } ck_Limits;
 
 // 15 minutes, 4 GiB.

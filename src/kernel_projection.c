@@ -1,22 +1,28 @@
 #include "kernel_projection.h"
 
-#include "sweep_order.h"
-
 #include <math.h>
 #include <stdlib.h>
 
 // Sweeps that run interleaved: enough independent work for a processor that waits for each sweep's last result.
 #define DEPTH 4
-// Rows between a sweep and the next: neither then touches the other's.
-#define LAG 2
+// Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it.
+#define LAG 3
 // Vectors of a row beyond which it alone has work enough, and several would not stay in the first cache.
 #define WIDE 10
 // Vectors of springs that go through each operation together: a processor would not look far enough ahead to fill the
 // wait for one's result with another's work.
 #define GROUP 4
 
-// One colour of a row's springs: no two of a colour share a particle. In the order of a sweep.
-typedef enum Colour { ALONG_EVEN, ALONG_ODD, ALONG_LAST, DOWN, DOWN_RIGHT, DOWN_LEFT, COLOURS } Colour;
+// One colour of a row's springs: no two of a colour share a particle. DOWN_LATE is the DOWN of the row above.
+typedef enum Colour { ALONG_EVEN, ALONG_ODD, ALONG_LAST, DOWN, DOWN_RIGHT, DOWN_LEFT, DOWN_LATE } Colour;
+#define COLOURS 6
+
+// The order of a sweep at a row. Springs that come late do more than twice as much for a stretched cloth; bars where
+// they are more than the freedoms they act on shake with it.
+static const Colour orders[][COLOURS] = {
+    [CK_PROJECT_BARS] = {ALONG_EVEN, ALONG_ODD, ALONG_LAST, DOWN, DOWN_RIGHT, DOWN_LEFT},
+    [CK_PROJECT_SPRINGS] = {ALONG_EVEN, ALONG_ODD, ALONG_LAST, DOWN_RIGHT, DOWN_LEFT, DOWN_LATE},
+};
 
 // What project_springs needs of a kind of springs.
 typedef struct Compliant {
@@ -32,8 +38,8 @@ struct ck_ProjectedCloth {
     int terms;
     long sweeps; // of this call
     double *x[3], *start[3], *v[3], *before[3], *is_free, *paired, *all;
-    double *multiplier[COLOURS]; // NULL: one sweep starts from 0 and needs none
-    bool *is_held;               // [rows + 1] a pin in the row or the one below
+    double *multiplier[DOWN_LATE + 1]; // NULL: one sweep starts from 0 and needs none
+    bool *is_held;                     // [rows + 1] a pin in the row or the one below
     double *state, *pairs, *multipliers;
 };
 
@@ -122,7 +128,8 @@ CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, Colour colour, int row, i
     double *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + at + here : NULL;
     const double *paired = cloth->paired + here;
     switch (colour) {
-    case DOWN: return (Ends){at + here, below + here, CK_STRUCTURAL, cloth->all + here, multiplier};
+    case DOWN:
+    case DOWN_LATE: return (Ends){at + here, below + here, CK_STRUCTURAL, cloth->all + here, multiplier};
     case DOWN_RIGHT: return (Ends){at + here, below + right, CK_SHEAR, paired, multiplier};
     case DOWN_LEFT: return (Ends){at + right, below + here, CK_SHEAR, paired, multiplier};
     default: return (Ends){at + here, at + right, CK_STRUCTURAL, paired, multiplier};
@@ -138,7 +145,7 @@ CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, Colour colour, int 
     const int span = cloth->rows.span;
     if (colour == ALONG_EVEN || colour == ALONG_ODD) return (Vectors){colour == ALONG_ODD, 2, span - 1};
     if (colour == ALONG_LAST) return (Vectors){span - 1, 1, span};
-    bool is_there = row + 1 < cloth->rows.rows && (colour == DOWN || cloth->rest[CK_SHEAR] > 0);
+    bool is_there = row + 1 < cloth->rows.rows && (colour == DOWN || colour == DOWN_LATE || cloth->rest[CK_SHEAR] > 0);
     return (Vectors){0, 1, is_there ? span : 0};
 }
 
@@ -169,8 +176,8 @@ typedef struct Wave {
 CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const Wave *wave, int first, int end, Colour colour,
                               const int terms) {
     for (int i = first; i < end; i++) {
-        int row = wave->wave - LAG * i;
-        if (row < 0 || row >= cloth->rows.rows) continue;
+        int at = wave->wave - LAG * i, row = at - (colour == DOWN_LATE);
+        if (row < 0 || at >= cloth->rows.rows) continue;
         if (cloth->is_held[row])
             project_row(cloth, colour, row, terms | HELD);
         else
@@ -191,7 +198,7 @@ CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last
             if (is_last) ck_lanes_store(cloth->before[axis] + i, v);
         }
     }
-    for (int colour = ALONG_LAST; colour < COLOURS && cloth->multipliers; colour++)
+    for (int colour = ALONG_LAST; colour <= DOWN_LEFT && cloth->multipliers; colour++)
         memset(cloth->multiplier[colour] + at, 0, sizeof(double) * (size_t)stride);
 }
 
@@ -207,7 +214,7 @@ CK_INLINE void finish_row(const ck_ProjectedCloth *cloth, int row) {
 
 // One loop for all colours: one for each takes a sixth less time and seven times as long to compile. Colour by colour,
 // so that each sweep in flight has the others' work to wait with. A substep's first sweep finds the row below
-// predicted; its last leaves the row done.
+// predicted; its last leaves the row above done.
 CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, const int terms) {
     for (int i = 0; i < wave->sweeps; i++) {
         long sweep = wave->first_sweep + i;
@@ -219,12 +226,13 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const Wave *wave, con
     }
     const int together = cloth->rows.span > WIDE ? 1 : wave->sweeps;
     for (int first = 0; first < wave->sweeps; first += together)
-        for (int colour = 0; colour < COLOURS; colour++)
-            project_colour(cloth, wave, first, first + together, colour, terms);
+        for (int turn = 0; turn < COLOURS; turn++)
+            project_colour(cloth, wave, first, first + together, orders[cloth->rule.projection][turn], terms);
     for (int i = 0; i < wave->sweeps; i++) {
         int row = wave->wave - LAG * i;
-        if ((wave->first_sweep + i + 1) % cloth->rule.iterations == 0 && row >= 0 && row < cloth->rows.rows)
-            finish_row(cloth, row);
+        if ((wave->first_sweep + i + 1) % cloth->rule.iterations || row < 0 || row >= cloth->rows.rows) continue;
+        if (row > 0) finish_row(cloth, row - 1);
+        if (row + 1 == cloth->rows.rows) finish_row(cloth, row);
     }
 }
 
@@ -250,7 +258,7 @@ void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *w
     cloth->sweeps = (long)substeps * cloth->rule.iterations;
     // a block's first sweep reads the row below it as the last sweep of the block before left it
     ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (cloth->sweeps + DEPTH - 1) / DEPTH,
-                                       cloth->rows.rows + LAG * (DEPTH - 1), LAG * (DEPTH - 1) + 1});
+                                       cloth->rows.rows + LAG * (DEPTH - 1), LAG * (DEPTH - 1) + 2});
 }
 
 void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
@@ -300,8 +308,9 @@ static void place_arrays(ck_ProjectedCloth *cloth) {
     cloth->paired = cloth->pairs;
     cloth->all = cloth->pairs + cloth->rows.stride;
     // the colours along a row have the row's vectors between them
-    for (int colour = 0; colour < COLOURS && cloth->multipliers; colour++)
+    for (int colour = 0; colour <= DOWN_LEFT && cloth->multipliers; colour++)
         cloth->multiplier[colour] = cloth->multipliers + size * (size_t)(colour > ALONG_LAST ? colour - ALONG_LAST : 0);
+    cloth->multiplier[DOWN_LATE] = cloth->multiplier[DOWN];
 }
 
 // Marks what is free; a row is held where it or the one below has a pin.
@@ -354,24 +363,27 @@ static int compare_visits(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-// When a sweep comes to a spring: by row, colour, vector and lane.
-static long when_visited(const ck_Rows *rows, const ck_Spring *spring) {
+// When a sweep comes to a spring: by the row it is at, colour, vector and lane.
+static long when_visited(const ck_Rows *rows, ck_Projection projection, const ck_Spring *spring) {
     int row = spring->a / rows->columns, right = spring->b % rows->columns - spring->a % rows->columns;
     int column = spring->a % rows->columns - (right < 0), vector = column % rows->span;
-    Colour colour = DOWN;
+    bool is_late = projection == CK_PROJECT_SPRINGS;
+    Colour colour = is_late ? DOWN_LATE : DOWN;
     if (spring->kind == CK_SHEAR) colour = right > 0 ? DOWN_RIGHT : DOWN_LEFT;
     if (spring->b / rows->columns == row) colour = vector + 1 == rows->span ? ALONG_LAST : vector % 2;
-    return (row * COLOURS + colour) * rows->stride + ck_rows_at(rows, 0, column);
+    // the colours' numbers have the order of either sweep
+    return ((row + (colour == DOWN_LATE)) * (DOWN_LATE + 1) + colour) * rows->stride + ck_rows_at(rows, 0, column);
 }
 
-ck_Status ck_sweep_order(const ck_Model *model, int *order) {
+ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, int *order) {
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
     if (!ck_projection_fits(model, &springs)) return CK_OK;
     const ck_Rows rows = ck_rows_of(model);
     Visit *visits = malloc(sizeof *visits * (size_t)model->spring_count);
     if (!visits) return CK_NO_MEMORY;
-    for (int i = 0; i < model->spring_count; i++) visits[i] = (Visit){when_visited(&rows, &model->springs[i]), i};
+    for (int i = 0; i < model->spring_count; i++)
+        visits[i] = (Visit){when_visited(&rows, projection, &model->springs[i]), i};
     qsort(visits, (size_t)model->spring_count, sizeof *visits, compare_visits);
     for (int i = 0; i < model->spring_count; i++) order[i] = visits[i].spring;
     free(visits);

@@ -1,19 +1,16 @@
 // Position constraints on a regular cloth, Gauss–Seidel over rows: rigid bars and compliant springs (XPBD).
 //
 // A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
-// corrected vector by vector: those along it from even columns of a run, then from odd ones, then the row's to the next
-// one, straight down, down right and down left. That is the order of ck_sweep_order.
+// corrected vector by vector: those along it from even columns of a run, then from odd ones; then of bars those to the
+// next row, straight down, down right and down left, of springs those down right and down left, and straight down from
+// the row above. That is the order of ck_sweep_order.
 #ifndef CK_KERNEL_PROJECTION_H
 #define CK_KERNEL_PROJECTION_H
 
 #include "rows.h"
 #include "status.h"
+#include "sweep_order.h"
 #include "waves.h"
-
-typedef enum ck_Projection {
-    CK_PROJECT_BARS, // Δx along the direction at the start of the substep, to first order (SHAKE)
-    CK_PROJECT_SPRINGS // Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃) along the direction now (XPBD)
-} ck_Projection;
 
 typedef struct ck_ProjectionRule {
     ck_Projection projection;

@@ -70,7 +70,7 @@ static ck_Spring *springs_in_order(const ck_Model *model, ck_Method method, cons
     if (found && method == CK_METHOD_BULLET_PBD && !used->reordered)
         for (size_t i = 0; i < count; i++) order[i] = (int)i;
     else if (found)
-        found = !ck_sweep_order(model, order);
+        found = !ck_sweep_order(model, method == CK_METHOD_STOERMER_BARS ? CK_PROJECT_BARS : CK_PROJECT_SPRINGS, order);
     for (size_t i = 0; i < count && found; i++) springs[i] = model->springs[order[i]];
     free(order);
     if (found) return springs;

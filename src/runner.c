@@ -45,7 +45,7 @@ static bool is_hopeless(const Job *job) {
     Report *report = job->report;
     if (!job->limits->foresees || report->cpu < job->limits->seconds / 20) return false;
     double foreseen = report->cpu / (report->frame_count - 1) * job->frames;
-    if (foreseen > 2 * job->limits->seconds) report->foreseen = foreseen;
+    if (foreseen > 1.5 * job->limits->seconds) report->foreseen = foreseen;
     return report->foreseen > 0;
 }
 
