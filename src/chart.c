@@ -4,31 +4,35 @@
 #include "path.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static const ck_Chart charts[] = {
     {"summary", "Which engine for which scene: error, and the cheapest within 1 %",
-     "scene,engine,status,metric,error,uncertainty,cpu_ms_per_s,class,is_cheapest,on_front", 1100, 900, true,
-     ck_chart_select_summary},
-    {"cost", "error against cost at automatic settings", "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status",
-     760, 470, false, ck_chart_select_cost},
-    {"precision", "error against cost over time steps and iterations", "engine,cpu_s,error,on_own_front,on_front", 760,
-     520, false, ck_chart_select_precision},
-    {"iterations", "iterations against substeps at equal cost", "engine,iterations,sweeps,error", 980, 640, false,
+     "scene,engine,status,metric,error,uncertainty,cpu_ms_per_s,timed_s,duration_s,class,is_cheapest,on_front,is_"
+     "better",
+     1300, 900, true, ck_chart_select_summary},
+    {"cost", "error against cost at automatic settings",
+     "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status,null_error", 760, 470, false, ck_chart_select_cost},
+    {"precision", "error against cost over time steps and iterations",
+     "engine,cpu_s,error,on_own_front,on_front,uncertainty", 760, 520, false, ck_chart_select_precision},
+    {"iterations", "iterations against substeps at equal cost", "engine,iterations,cpu_s,error", 980, 640, false,
      ck_chart_select_iterations},
     {"errors", "errors, and how well the truth is known", "engine,metric,error,uncertainty", 860, 470, false,
      ck_chart_select_errors},
-    {"sag", "sag against time", "engine,time_s,value", 760, 430, false, ck_chart_select_sag},
-    {"energy", "energy against time", "engine,time_s,value", 760, 430, false, ck_chart_select_energy},
-    {"height", "height above the colliders against time", "engine,time_s,value", 760, 430, false,
+    {"sag", "sag against time", "engine,time_s,value,is_marked", 760, 430, false, ck_chart_select_sag},
+    {"energy", "energy against time", "engine,time_s,value,is_marked", 760, 430, false, ck_chart_select_energy},
+    {"height", "height above the colliders against time", "engine,time_s,value,is_marked", 760, 430, false,
      ck_chart_select_height},
     {"deviations", "how far the engines are from each other", "engine,other_engine,deviation", 760, 640, false,
      ck_chart_select_deviations},
-    {"stability", "where methods fail", "engine,time_step_s,stiffness_factor,status,predicted_step_s,iterations", 1080,
-     1100, false, ck_chart_select_stability},
+    {"stability", "where methods fail (of two rows the upper one has more iterations)",
+     "engine,time_step_s,stiffness_factor,status,predicted_step_s,iterations", 1080, 1100, false,
+     ck_chart_select_stability},
     {"needs", "what the scene needs", "left_out,metric,excess", 860, 430, false, ck_chart_select_needs},
     {"size", "Cost against size", "engine,particles,time_s,metric", 1080, 480, true, ck_chart_select_size},
 };
@@ -83,8 +87,8 @@ static void write_looks(FILE *file, const ck_ReportData *data) {
 static void write_plot(FILE *file, const ck_Chart *chart, const char *scene, const char *terminal, const char *ending) {
     char name[200];
     ck_chart_file(name, sizeof name, chart, scene);
-    fprintf(file, "reset\nload 'looks.gp'\ndata = '%s.csv'\ntitle = '%s%s%s'\n", name, chart->is_of_all ? "" : scene,
-            chart->is_of_all ? "" : ": ", chart->title);
+    fprintf(file, "print 'chart %s'\nreset\nload 'looks.gp'\ndata = '%s.csv'\ntitle = '%s%s%s'\n", name, name,
+            chart->is_of_all ? "" : scene, chart->is_of_all ? "" : ": ", chart->title);
     fprintf(file, "set terminal %s size %d,%d font 'sans,12' background rgb 'white'\nset output '%s.%s'\n", terminal,
             chart->width, chart->height, name, ending);
     fprintf(file, "load sources.'/common.gp'\nload sources.'/%s.gp'\nunset output\n", chart->name);
@@ -109,30 +113,50 @@ static int write_numbers(const ck_ReportData *data, const ck_Chart *chart, const
     return rows;
 }
 
-// Runs gnuplot on charts.gp in the directory. What it says goes to gnuplot.log there, and its end into the error.
+// Waits for gnuplot, and ends it where a signal asks for that.
+static ck_Status wait_for(pid_t child, int *state, ck_Error *error) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    while (waitpid(child, state, WNOHANG) == 0) {
+        if (ck_child_interrupted) kill(child, SIGKILL);
+        nanosleep(&pause, NULL);
+    }
+    return ck_child_interrupted ? ck_fail(error, CK_IO, "interrupted; no report was written") : CK_OK;
+}
+
+// What gnuplot said of the chart that it ended in.
+static void read_complaint(char *text, size_t size, const char *directory) {
+    char *path = ck_path_join(directory, "gnuplot.log"), *log = NULL;
+    size_t length;
+    snprintf(text, size, "it said nothing");
+    if (path && !ck_file_read(&log, &length, path, NULL)) {
+        const char *last = log;
+        for (const char *next = log; (next = strstr(next, "chart ")); next++)
+            if (next == log || next[-1] == '\n') last = next;
+        snprintf(text, size, "%s", last);
+    }
+    for (char *letter = text; *letter; letter++)
+        if (*letter == '\n') *letter = ' ';
+    free(log);
+    free(path);
+}
+
+// Runs gnuplot on charts.gp in the directory. What it says goes to gnuplot.log there.
 static ck_Status run_gnuplot(const char *directory, ck_Error *error) {
     int state = -1;
     pid_t child = fork();
     if (child == 0) {
         if (chdir(directory) || !freopen("gnuplot.log", "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(126);
-        execlp("gnuplot", "gnuplot", "charts.gp", (char *)NULL);
+        execlp("gnuplot", "gnuplot", "-d", "charts.gp", (char *)NULL);
         _exit(127);
     }
-    if (child < 0 || waitpid(child, &state, 0) < 0)
-        return ck_fail(error, CK_IO, "gnuplot cannot be started: %s", strerror(errno));
+    if (child < 0) return ck_fail(error, CK_IO, "gnuplot cannot be started: %s", strerror(errno));
+    ck_Status status = wait_for(child, &state, error);
+    if (status || (WIFEXITED(state) && !WEXITSTATUS(state))) return status;
     if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
         return ck_fail(error, CK_IO, "gnuplot is not there; charts need Debian's package gnuplot-nox or its like");
-    if (ck_child_interrupted) return ck_fail(error, CK_IO, "interrupted; no report was written");
-    if (WIFEXITED(state) && !WEXITSTATUS(state)) return CK_OK;
-    char *path = ck_path_join(directory, "gnuplot.log"), *text = NULL;
-    size_t size;
-    if (path) ck_file_read(&text, &size, path, NULL);
-    for (char *letter = text; letter && *letter; letter++)
-        if (*letter == '\n') *letter = ' ';
-    ck_Status status = ck_fail(error, CK_IO, "gnuplot failed: %.400s", text ? text : "it said nothing");
-    free(text);
-    free(path);
-    return status;
+    char complaint[400];
+    read_complaint(complaint, sizeof complaint, directory);
+    return ck_fail(error, CK_IO, "gnuplot failed: %s", complaint);
 }
 
 static FILE *open_script(const char *directory, const char *name) {

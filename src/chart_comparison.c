@@ -7,6 +7,7 @@
 // An error that is nothing has its place at the foot of a logarithmic axis.
 #define LEAST_ERROR 1e-16
 #define MOST_TIMES 240
+#define MARKS 8 // on each line over time
 
 static bool is_of(const ck_CsvTable *table, int row, const char *scene) {
     return !strcmp(ck_csv_table_text(table, row, 0), scene);
@@ -21,42 +22,49 @@ static double on_axis(double error) {
     return fmax(error, LEAST_ERROR);
 }
 
-// scene, engine, status, class of error, mark of the cheapest within 1 %. Classes: 0 within 0.1 %, 1 within 1 %, 2
-// within 10 %, 3 beyond, 4 no error known, 5 failed, 6 not to be had.
+// 0 within 0.1 %, 1 within 1 %, 2 within 10 %, 3 beyond or no better than moving nothing, 4 no error known, 5 failed, 6
+// not to be had.
 static int class_of(const ck_Summary *one) {
     if (!strcmp(one->status, "unsupported") || !strcmp(one->status, "refused")) return 6;
     if (strcmp(one->status, "ok")) return 5;
-    if (isnan(one->error)) return 4;
-    return one->error <= 1e-3 ? 0 : one->error <= 1e-2 ? 1 : one->error <= 1e-1 ? 2 : 3;
+    if (isnan(one->told) || !is_shown(one->engine)) return 4;
+    if (!one->is_better) return 3;
+    return one->told <= 1e-3 ? 0 : one->told <= 1e-2 ? 1 : one->told <= 1e-1 ? 2 : 3;
 }
 
 static bool is_cheapest(const ck_ReportData *data, const ck_Summary *one) {
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *other = &data->summary[i];
-        if (!strcmp(other->scene, one->scene) && is_shown(other->engine) && class_of(other) <= 1 &&
-            other->cost < one->cost)
-            return false;
+        if (!strcmp(other->scene, one->scene) && class_of(other) <= 1 && other->cost < one->cost) return false;
     }
-    return class_of(one) <= 1 && !isnan(one->cost) && is_shown(one->engine);
+    return class_of(one) <= 1 && one->cost > 0;
 }
 
 int ck_chart_select_summary(const ck_ReportData *data, const char *scene, FILE *out) {
     (void)scene;
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *one = &data->summary[i];
-        fprintf(out, "%s,%s,%s,%s,%.9g,%.9g,%.9g,%d,%d,%d\n", one->scene, one->engine, one->status, one->metric,
-                one->error, one->uncertainty, 1e3 * one->cost, class_of(one), is_cheapest(data, one), one->on_front);
+        fprintf(out, "%s,%s,%s,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d,%d\n", one->scene, one->engine, one->status,
+                one->metric, one->error, one->uncertainty, 1e3 * one->cost, one->timed, one->duration, class_of(one),
+                is_cheapest(data, one), one->on_front, one->is_better);
     }
     return data->summary_count;
+}
+
+// What moving nothing is off by; NaN: not known.
+static double null_error(const ck_ReportData *data, const char *scene) {
+    for (int i = 0; i < data->summary_count; i++)
+        if (!strcmp(data->summary[i].scene, scene) && !is_shown(data->summary[i].engine)) return data->summary[i].error;
+    return NAN;
 }
 
 int ck_chart_select_cost(const ck_ReportData *data, const char *scene, FILE *out) {
     int rows = 0;
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *one = &data->summary[i];
-        if (strcmp(one->scene, scene) || !is_shown(one->engine) || isnan(one->error) || isnan(one->cost)) continue;
-        fprintf(out, "%s,%.9g,%.9g,%.9g,%d,%s,%s\n", one->engine, 1e3 * one->cost, on_axis(one->error),
-                one->uncertainty, one->on_front, one->metric, one->status);
+        if (strcmp(one->scene, scene) || !is_shown(one->engine) || !isfinite(one->error) || !(one->cost > 0)) continue;
+        fprintf(out, "%s,%.9g,%.9g,%.9g,%d,%s,%s,%.9g\n", one->engine, 1e3 * one->cost, on_axis(one->error),
+                one->uncertainty, one->on_front, one->metric, one->status, null_error(data, scene));
         rows++;
     }
     return rows;
@@ -80,7 +88,7 @@ int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *o
         const char *metric = ck_csv_table_text(metrics, row, 2);
         double error = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error"));
         if (!is_of(metrics, row, scene) || !is_shown(ck_csv_table_text(metrics, row, 1)) || !is_answer(metric) ||
-            isnan(error))
+            !isfinite(error))
             continue;
         double uncertainty = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "truth_uncertainty"));
         fprintf(out, "%s,%s,%.9g,%.9g\n", ck_csv_table_text(metrics, row, 1), metric, on_axis(error), uncertainty);
@@ -96,15 +104,29 @@ int ck_chart_select_deviations(const ck_ReportData *data, const char *scene, FIL
     for (int row = 0; table && row < table->row_count; row++) {
         if (!is_of(table, row, scene) || strcmp(ck_csv_table_text(table, row, 1), "position_rms")) continue;
         const char *one = ck_csv_table_text(table, row, 2), *other = ck_csv_table_text(table, row, 3);
-        if (!is_shown(one) || !is_shown(other)) continue;
         double deviation = ck_csv_table_number(table, row, ck_layout_column(table->layout, "deviation"));
+        if (!is_shown(one) || !is_shown(other) || !isfinite(deviation)) continue;
         fprintf(out, "%s,%s,%.9g\n%s,%s,%.9g\n", one, other, deviation, other, one, deviation);
         rows += 2;
     }
     return rows;
 }
 
-// One metric over time; of long series every k-th frame, for a chart has no more dots.
+// One engine's run of rows, thinned: of long series every k-th frame, for a chart has no more dots. Every so often one
+// is marked, each engine's elsewhere, so that lines on each other are told apart.
+static int write_series(const ck_ReportData *data, const ck_CsvTable *table, int first, int end, FILE *out) {
+    const char *engine = ck_csv_table_text(table, first, 1);
+    int stride = (end - first + MOST_TIMES - 1) / MOST_TIMES, rows = 0;
+    int between = (end - first) / stride / MARKS + 1, offset = ck_report_engine(data, engine) * between / 12;
+    for (int i = first; i < end && is_shown(engine); i++) {
+        double time = ck_csv_table_number(table, i, 2), value = ck_csv_table_number(table, i, 4);
+        if (((i - first) % stride && i != end - 1) || !isfinite(time) || !isfinite(value)) continue;
+        fprintf(out, "%s,%.9g,%.9g,%d\n", engine, time, value, (i - first) / stride % between == offset % between);
+        rows++;
+    }
+    return rows;
+}
+
 static int select_series(const ck_ReportData *data, const char *scene, const char *metric, FILE *out) {
     const ck_CsvTable *table = ck_report_table(data, CK_SERIES);
     int rows = 0;
@@ -114,12 +136,7 @@ static int select_series(const ck_ReportData *data, const char *scene, const cha
         while (end < table->row_count && is_of(table, end, scene) &&
                !strcmp(ck_csv_table_text(table, end, 3), metric) && !strcmp(ck_csv_table_text(table, end, 1), engine))
             end++;
-        int stride = (end - row + MOST_TIMES - 1) / MOST_TIMES;
-        for (int i = row; i < end; i++) {
-            if (!is_shown(engine) || ((i - row) % stride && i != end - 1)) continue;
-            fprintf(out, "%s,%.9g,%.9g\n", engine, ck_csv_table_number(table, i, 2), ck_csv_table_number(table, i, 4));
-            rows++;
-        }
+        if (end > row) rows += write_series(data, table, row, end, out);
         row = end > row ? end : row + 1;
     }
     return rows;

@@ -6,6 +6,8 @@
 
 // An engine that is further off than that, in sizes of the body, has blown up: it would flatten the picture.
 #define MOST_ERROR 10
+#define LEAST_EXCESS 1e-4
+#define MOST_EXCESS 1e4
 
 static bool is_of(const ck_CsvTable *table, int row, const char *scene) {
     return !strcmp(ck_csv_table_text(table, row, 0), scene);
@@ -17,6 +19,19 @@ static double number(const ck_CsvTable *table, int row, const char *column) {
 
 static const char *text(const ck_CsvTable *table, int row, const char *column) {
     return ck_csv_table_text(table, row, ck_layout_column(table->layout, column));
+}
+
+// What has a place on a logarithmic axis.
+static bool is_drawn(double value) {
+    return value > 0 && isfinite(value);
+}
+
+// Of positions on a scene; NaN: not known.
+static double uncertainty_of(const ck_ReportData *data, const char *scene) {
+    for (int i = 0; i < data->summary_count; i++)
+        if (!strcmp(data->summary[i].scene, scene) && !strcmp(data->summary[i].metric, "position_rms"))
+            return data->summary[i].uncertainty;
+    return NAN;
 }
 
 // True where no other row of the same engine is both cheaper and nearer to the truth.
@@ -35,9 +50,9 @@ int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
         double error = number(table, row, "error"), cost = number(table, row, "cpu_s");
-        if (!is_of(table, row, scene) || !(error < MOST_ERROR) || isnan(cost)) continue;
-        fprintf(out, "%s,%.9g,%.9g,%d,%d\n", text(table, row, "engine"), cost, error, is_on_own_front(table, row),
-                number(table, row, "on_front") > 0);
+        if (!is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
+        fprintf(out, "%s,%.9g,%.9g,%d,%d,%.9g\n", text(table, row, "engine"), cost, error, is_on_own_front(table, row),
+                number(table, row, "on_front") > 0, uncertainty_of(data, scene));
         rows++;
     }
     return rows;
@@ -56,10 +71,10 @@ int ck_chart_select_iterations(const ck_ReportData *data, const char *scene, FIL
     const ck_CsvTable *table = ck_report_table(data, CK_PRECISION);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        double error = number(table, row, "error");
-        if (!is_of(table, row, scene) || !(error < MOST_ERROR) || !varies_iterations(table, row)) continue;
-        fprintf(out, "%s,%g,%g,%.9g\n", text(table, row, "engine"), number(table, row, "iterations"),
-                number(table, row, "sweeps"), error);
+        double error = number(table, row, "error"), cost = number(table, row, "cpu_s");
+        if (!is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
+        if (!varies_iterations(table, row)) continue;
+        fprintf(out, "%s,%g,%.9g,%.9g\n", text(table, row, "engine"), number(table, row, "iterations"), cost, error);
         rows++;
     }
     return rows;
@@ -73,7 +88,9 @@ int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE
         bool is_cell = !strcmp(text(table, row, "case"), "map");
         double step = number(table, row, is_cell ? "time_step_s" : "critical_step_s");
         const char *status = text(table, row, "status");
-        if (!is_of(table, row, scene) || isnan(step) || strcmp(text(table, row, "damping"), "scene")) continue;
+        if (!is_of(table, row, scene) || !is_drawn(step) || !is_drawn(number(table, row, "stiffness_factor")) ||
+            strcmp(text(table, row, "damping"), "scene"))
+            continue;
         if (!strcmp(status, "unsupported") || !strcmp(status, "refused")) continue;
         fprintf(out, "%s,%.9g,%.9g,%s,%.9g,%g\n", text(table, row, "engine"), step,
                 number(table, row, "stiffness_factor"), is_cell ? status : "critical",
@@ -83,14 +100,15 @@ int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE
     return rows;
 }
 
-// The largest change that leaving a term out makes, over all metrics, in units of the tolerance.
+// What leaving a term out changes, in units of the tolerance; what is beyond the axis, at its ends.
 int ck_chart_select_needs(const ck_ReportData *data, const char *scene, FILE *out) {
     const ck_CsvTable *table = ck_report_table(data, CK_NEEDS);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
         double excess = fabs(number(table, row, "change")) / number(table, row, "tolerance");
-        if (!is_of(table, row, scene) || !(excess > 0)) continue;
-        fprintf(out, "%s,%s,%.9g\n", text(table, row, "left_out"), text(table, row, "metric"), excess);
+        if (!is_of(table, row, scene) || isnan(excess)) continue;
+        fprintf(out, "\"%s\",%s,%.9g\n", text(table, row, "left_out"), text(table, row, "metric"),
+                fmax(LEAST_EXCESS, fmin(MOST_EXCESS, excess)));
         rows++;
     }
     return rows;
@@ -105,7 +123,8 @@ int ck_chart_select_size(const ck_ReportData *data, const char *scene, FILE *out
         bool is_growth = !strcmp(metric, "growth_step_time");
         bool is_cost = !strcmp(metric, "second_time") && !strcmp(text(table, row, "setup"), "automatic");
         double value = number(table, row, "value");
-        if (strcmp(text(table, row, "body"), "cloth") || isnan(value) || !(is_growth || is_cost)) continue;
+        if (strcmp(text(table, row, "body"), "cloth") || !is_drawn(value) || !(is_growth || is_cost)) continue;
+        if (!is_drawn(number(table, row, "particles"))) continue;
         fprintf(out, "%s,%g,%.9g,%s\n", text(table, row, "engine"), number(table, row, "particles"), value, metric);
         rows++;
     }

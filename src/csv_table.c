@@ -64,10 +64,12 @@ static void take_field(void *text, size_t length, void *context) {
     reader->column++;
 }
 
+// As clothcheck writes numbers: strtod would also take hexadecimal ones and words that other readers do not.
 static bool is_number(const char *text) {
     char *end;
+    if (!strcmp(text, "inf") || !strcmp(text, "-inf")) return true;
     strtod(text, &end);
-    return end != text && !*end;
+    return end != text && !*end && strspn(text, "+-.0123456789eE") == strlen(text);
 }
 
 // What a run can end in, and what a map of stability knows besides.
@@ -123,15 +125,32 @@ static void end_row(int end, void *context) {
     reader->column = 0;
 }
 
+// Blanks belong to a field, whose readers do not agree on them elsewhere.
+static int is_space(unsigned char letter) {
+    (void)letter;
+    return 0;
+}
+
+// What readers of CSV do not agree on; NULL: there is none of it.
+static const char *oddity_of(const char *line, size_t length) {
+    if (memchr(line, 0, length)) return "there is a zero byte";
+    if (memchr(line, '\r', length)) return "there is a carriage return; a line must end with a newline alone";
+    return length == 1 ? "the line is empty" : NULL;
+}
+
 // Line by line, so that an error knows where it is.
 static ck_Status parse(Reader *reader, const char *bytes, size_t size) {
     struct csv_parser parser;
     if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI)) return ck_fail(reader->error, CK_NO_MEMORY, "out of memory");
+    csv_set_space_func(&parser, is_space);
     for (size_t at = 0; at < size && !reader->status;) {
         const char *newline = memchr(bytes + at, '\n', size - at);
         size_t length = newline ? (size_t)(newline - bytes) + 1 - at : size - at;
         reader->line++;
-        if (!newline)
+        const char *oddity = oddity_of(bytes + at, length);
+        if (oddity)
+            reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: %s", reader->path, reader->line, oddity);
+        else if (!newline)
             reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: the line has no end: the file is cut off",
                                      reader->path, reader->line);
         else if (csv_parse(&parser, bytes + at, length, take_field, end_row, reader) != length)

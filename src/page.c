@@ -1,6 +1,7 @@
 #include "page.h"
 
 #include "chart.h"
+#include "child.h"
 #include "path.h"
 #include "replay.h"
 
@@ -10,9 +11,6 @@
 #include <string.h>
 #include <unistd.h>
 #include <zlib.h>
-
-// A CSV that is larger lies beside the page only: series of a whole comparison would make it slow to open.
-#define MOST_PACKED_BYTES ((size_t)2 << 20)
 
 typedef struct Page {
     const ck_ReportData *data;
@@ -50,6 +48,7 @@ static ck_Status compress_bytes(char **out, size_t *out_size, const char *bytes,
 
 // Adds bytes under a name that scripts of the page find them by.
 static ck_Status pack(const Page *page, const char *name, const char *bytes, size_t size, ck_Error *error) {
+    if (ck_child_interrupted) return ck_fail(error, CK_IO, "interrupted; no report was written");
     char *small;
     size_t small_size;
     ck_Status status = compress_bytes(&small, &small_size, bytes, size, error);
@@ -66,12 +65,12 @@ static ck_Status pack(const Page *page, const char *name, const char *bytes, siz
     return status;
 }
 
-static ck_Status pack_file(const Page *page, const char *directory, const char *file, size_t most, ck_Error *error) {
+static ck_Status pack_file(const Page *page, const char *directory, const char *file, ck_Error *error) {
     char *path = ck_path_join(directory, file), *bytes = NULL;
     size_t size;
     ck_Status status = path ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_file_read(&bytes, &size, path, error);
-    if (!status && size <= most) status = pack(page, file, bytes, size, error);
+    if (!status) status = pack(page, file, bytes, size, error);
     free(bytes);
     free(path);
     return status;
@@ -160,7 +159,7 @@ static ck_Status pack_charts(const Page *page, ck_Error *error) {
             ck_chart_file(name, sizeof name, ck_chart_at(i),
                           scene < page->data->scene_count ? page->data->scenes[scene] : NULL);
             snprintf(file, sizeof file, "%s.svg", name);
-            status = pack_file(page, page->charts, file, SIZE_MAX, error);
+            status = pack_file(page, page->charts, file, error);
         }
     return status;
 }
@@ -169,11 +168,12 @@ static ck_Status write_report(const Page *page, ck_Error *error) {
     const ck_ReportData *data = page->data;
     write_contents(page);
     ck_Status status = CK_OK;
+    // series of a whole comparison would make the page slow to open: they lie beside it
     for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++)
-        if (ck_report_table(data, i))
-            status = pack_file(page, data->directory, ck_layouts[i].file, MOST_PACKED_BYTES, error);
+        if (ck_report_table(data, i) && i != CK_SERIES)
+            status = pack_file(page, data->directory, ck_layouts[i].file, error);
     // what was summed up for the chart is what the page's first table is of
-    if (!status && data->summary_count) status = pack_file(page, page->charts, "summary.csv", SIZE_MAX, error);
+    if (!status && data->summary_count) status = pack_file(page, page->charts, "summary.csv", error);
     if (!status) status = pack_charts(page, error);
     for (int i = 0; i < data->scene_count && !status; i++)
         if (has_replay(page, data->scenes[i])) status = pack_replay(page, data->scenes[i], error);
@@ -211,24 +211,21 @@ static ck_Status fill_template(const Page *page, char *template, ck_Error *error
 }
 
 ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const char *charts, const bool *drawn,
-                        ck_Error *error) {
+                        const char *path, ck_Error *error) {
     Page page = {.data = data, .sources = sources, .charts = charts, .drawn = drawn};
-    char *path = ck_path_join(data->directory, "index.html"), *part = ck_path_part(data->directory, "index.html");
     char *source = ck_path_join(sources, "page/page.html"), *template = NULL;
     size_t size;
-    ck_Status status = path && part && source ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Status status = source ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_file_read(&template, &size, source, error);
-    if (!status && !(page.file = fopen(part, "w"))) status = ck_fail(error, CK_IO, "%s: %s", part, strerror(errno));
+    if (!status && !(page.file = fopen(path, "w"))) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
     if (!status) status = fill_template(&page, template, error);
     if (page.file) {
         bool failed = fflush(page.file) || ferror(page.file);
         failed |= fclose(page.file) != 0;
-        if (!status && (failed || rename(part, path))) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
-        if (status) unlink(part);
+        if (!status && failed) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
+        if (status) unlink(path);
     }
     free(template);
     free(source);
-    free(part);
-    free(path);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "path.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,9 +14,12 @@
 
 #define MOST_FRAMES 61
 #define MOST_BYTES ((size_t)4 << 20)
+// A page looks for the end of the header in so many bytes.
+#define MOST_HEADER 8192
 #define CODE_BITS 24
 #define CODE_MASK ((1u << CODE_BITS) - 1)
 #define NO_POSITION (1u << 21)
+#define BOX_BYTES (6 * sizeof(float))
 
 // The frames that are kept: every stride-th, and the last.
 static int find_stride(const ck_Model *model, int paths) {
@@ -136,24 +140,94 @@ static size_t path_codes(const ck_Replay *replay) {
     return (size_t)replay->frame_count * (size_t)replay->particle_count * 3;
 }
 
-// Takes the counts from the header. False where it is none, or the file has not the size that they say.
-static bool read_header(ck_Replay *replay, const char *scene) {
-    char name[128] = "";
-    int columns, used = 0;
-    sscanf(replay->bytes,
-           "clothcheck replay 1\nscene %127s\ncolumns %d\nparticles %d\nsprings %d\nframes %d\npaths %d%n", name,
-           &columns, &replay->particle_count, &replay->spring_count, &replay->frame_count, &replay->path_count, &used);
-    const char *end = used ? strstr(replay->bytes, "\ndata\n") : NULL;
-    if (!end || strcmp(name, scene)) return false;
-    // more than any comparison writes would overflow what follows
-    const int most = 1 << 23;
-    if (replay->particle_count < 1 || replay->spring_count < 0 || replay->frame_count < 1 || replay->path_count < 0 ||
-        replay->particle_count > most || replay->spring_count > most || replay->frame_count > most ||
-        replay->path_count > CK_SCENE_MAX_ENGINES + 1)
+// Reads "KEY NUMBER" from least to most, and steps over the line. False where it is none.
+static bool read_count(const char **line, const char *key, long least, long most, int *count) {
+    size_t length = strlen(key);
+    char *end;
+    if (strncmp(*line, key, length) || (*line)[length] != ' ' || !isdigit((unsigned char)(*line)[length + 1]))
         return false;
-    replay->header_size = (size_t)(end - replay->bytes) + strlen("\ndata\n");
+    errno = 0;
+    long number = strtol(*line + length + 1, &end, 10);
+    if (*end != '\n' || errno || number < least || number > most) return false;
+    *count = (int)number;
+    *line = end + 1;
+    return true;
+}
+
+static bool read_text(const char **line, const char *text) {
+    size_t length = strlen(text);
+    if (strncmp(*line, text, length)) return false;
+    *line += length;
+    return true;
+}
+
+// "path NAME", where NAME is an engine or the truth and none that came before.
+static bool read_path(const char **line, const char *first) {
+    char whole[80];
+    size_t length = strcspn(*line, "\n");
+    if (length < 6 || length > 60) return false;
+    snprintf(whole, sizeof whole, "\n%.*s\n", (int)length, *line);
+    const char *name = whole + strlen("\npath ");
+    char plain[80];
+    snprintf(plain, sizeof plain, "%.*s", (int)strcspn(name, "\n"), name);
+    bool is_known = !strcmp(plain, "truth") || ck_engine_find(plain);
+    bool is_new = strstr(first, whole) == *line - 1;
+    *line += length + 1;
+    return !strncmp(whole, "\npath ", strlen("\npath ")) && is_known && is_new;
+}
+
+// "plane" or "sphere" and its numbers.
+static bool read_collider(const char **line) {
+    int numbers = !strncmp(*line, "plane ", 6) ? 6 : !strncmp(*line, "sphere ", 7) ? 4 : 0;
+    const char *at = strchr(*line, ' ');
+    for (int i = 0; i < numbers; i++) {
+        char *end;
+        double number = strtod(at, &end);
+        if (*at != ' ' || end == at || !isfinite(number)) return false;
+        at = end;
+    }
+    if (!numbers || *at != '\n') return false;
+    *line = at + 1;
+    return true;
+}
+
+static bool read_header(ck_Replay *replay, const char *scene) {
+    const int most = 1 << 23;
+    const char *line = replay->bytes;
+    int columns = 0;
+    if (!read_text(&line, "clothcheck replay 1\nscene ") || !read_text(&line, scene) || !read_text(&line, "\n"))
+        return false;
+    if (!read_count(&line, "columns", 0, most, &columns) ||
+        !read_count(&line, "particles", 1, most, &replay->particle_count) ||
+        !read_count(&line, "springs", 0, most, &replay->spring_count) ||
+        !read_count(&line, "frames", 1, most, &replay->frame_count) ||
+        !read_count(&line, "paths", 0, CK_SCENE_MAX_ENGINES + 1, &replay->path_count))
+        return false;
+    if (columns && replay->particle_count % columns) return false;
+    for (int i = 0; i < replay->path_count; i++)
+        if (!read_path(&line, replay->bytes)) return false;
+    while (!read_text(&line, "data\n"))
+        if (!read_collider(&line)) return false;
+    replay->header_size = (size_t)(line - replay->bytes);
+    return replay->header_size <= MOST_HEADER;
+}
+
+// True where the file has the size that its header says, and springs are between its particles.
+static bool is_sound(const ck_Replay *replay) {
     size_t numbers = (size_t)replay->frame_count + (size_t)replay->path_count * path_codes(replay);
-    return replay->size == replay->header_size + numbers * sizeof(float) + spring_bytes(replay);
+    if (replay->size != replay->header_size + numbers * sizeof(float) + spring_bytes(replay)) return false;
+    const char *at = replay->bytes + replay->header_size;
+    for (int i = 0; i < replay->frame_count; i++, at += sizeof(float)) {
+        float time;
+        memcpy(&time, at, sizeof time);
+        if (!isfinite(time)) return false;
+    }
+    for (int i = 0; i < 2 * replay->spring_count; i++, at += sizeof(int32_t)) {
+        int32_t end;
+        memcpy(&end, at, sizeof end);
+        if (end < 0 || end >= replay->particle_count) return false;
+    }
+    return true;
 }
 
 ck_Status ck_replay_read(ck_Replay *replay, const char *directory, const char *scene, ck_Error *error) {
@@ -162,7 +236,7 @@ ck_Status ck_replay_read(ck_Replay *replay, const char *directory, const char *s
     char *path = name && folder ? ck_path_join(folder, name) : NULL;
     ck_Status status = path ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_file_read(&replay->bytes, &replay->size, path, error);
-    if (!status && !read_header(replay, scene))
+    if (!status && !(read_header(replay, scene) && is_sound(replay)))
         status =
             ck_fail(error, CK_BAD_INPUT, "%s: is no whole replay of %s; 'clothcheck compare' writes it", path, scene);
     free(path);
@@ -185,28 +259,44 @@ static float position_at(const ck_Replay *replay, size_t index) {
     return value;
 }
 
-// What the first path that is there all the time fills, and half as much again on either side: what flies off leaves.
-static void find_box(const ck_Replay *replay, float box[2][3]) {
-    size_t codes = path_codes(replay), first = 0;
-    for (int path = replay->path_count - 1; path >= 0; path--) {
-        bool is_whole = true;
-        for (size_t i = 0; i < codes && is_whole; i++) is_whole = fabsf(position_at(replay, path * codes + i)) < 1e6f;
-        if (is_whole) first = (size_t)path * codes;
-    }
-    float least[3] = {INFINITY, INFINITY, INFINITY}, largest[3] = {-INFINITY, -INFINITY, -INFINITY};
+// The corners of what a path fills, of positions within a distance of the origin, and half as much again on either
+// side.
+static void find_box(const ck_Replay *replay, size_t path, float farthest, float box[2][3]) {
+    size_t codes = path_codes(replay);
+    float least[3] = {INFINITY, INFINITY, INFINITY}, largest[3] = {-INFINITY, -INFINITY, -INFINITY}, width = 0;
     for (size_t i = 0; i < codes; i++) {
-        float at = position_at(replay, first + i);
-        if (!isfinite(at)) continue;
+        float at = position_at(replay, path * codes + i);
+        if (!(fabsf(at) < farthest)) continue;
         least[i % 3] = fminf(least[i % 3], at);
         largest[i % 3] = fmaxf(largest[i % 3], at);
     }
-    float width = 0;
     for (int k = 0; k < 3; k++) width = fmaxf(width, largest[k] - least[k]);
     if (!(width > 0)) width = 1;
     for (int k = 0; k < 3; k++) {
         box[0][k] = isfinite(least[k]) ? least[k] - width / 2 : -width;
         box[1][k] = isfinite(largest[k]) ? largest[k] + width / 2 : width;
     }
+}
+
+// The first path that is there all the time; 0 where there is none.
+static size_t find_whole(const ck_Replay *replay) {
+    size_t codes = path_codes(replay);
+    for (size_t path = 0; path < (size_t)replay->path_count; path++) {
+        bool is_whole = true;
+        for (size_t i = 0; i < codes && is_whole; i++) is_whole = fabsf(position_at(replay, path * codes + i)) < 1e6f;
+        if (is_whole) return path;
+    }
+    return 0;
+}
+
+// True where all of a path's positions are in the box, but for those that are none.
+static bool fits(const ck_Replay *replay, size_t path, const float box[2][3]) {
+    size_t codes = path_codes(replay);
+    for (size_t i = 0; i < codes; i++) {
+        float at = position_at(replay, path * codes + i);
+        if (at < box[0][i % 3] || at > box[1][i % 3]) return false;
+    }
+    return true;
 }
 
 static uint32_t code_of(float at, const float box[2][3], size_t axis) {
@@ -227,15 +317,19 @@ static uint32_t change_at(const uint32_t *codes, const uint32_t *first, size_t i
     return zigzag(change & CODE_MASK);
 }
 
-// Writes a path's codes in whichever way has smaller numbers. Returns what follows.
-static char *pack_path(char *out, const uint32_t *codes, const uint32_t *first, size_t count, size_t width) {
+// Writes a path in whichever way has smaller numbers: beside the first one's changes, which may be NULL, or alone.
+// Returns what follows.
+static char *pack_path(char *out, const uint32_t *codes, const uint32_t *first, const float box[2][3], size_t count,
+                       size_t width) {
     double alone = 0, led = 0;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && first; i++) {
         alone += change_at(codes, NULL, i, width);
         led += change_at(codes, first, i, width);
     }
-    const uint32_t *leader = codes != first && led < alone ? first : NULL;
+    const uint32_t *leader = led < alone ? first : NULL;
     *out++ = leader != NULL;
+    memcpy(out, box, BOX_BYTES);
+    out += BOX_BYTES;
     for (size_t i = 0; i < count; i++) {
         uint32_t change = change_at(codes, leader, i, width);
         for (size_t byte = 0; byte < CODE_BITS / 8; byte++) out[byte * count + i] = (char)(change >> 8 * byte & 0xff);
@@ -247,21 +341,27 @@ ck_Status ck_replay_pack(char **packed, size_t *size, const ck_Replay *replay, c
     size_t before = replay->header_size + sizeof(float) * (size_t)replay->frame_count + spring_bytes(replay);
     size_t count = path_codes(replay), width = 3 * (size_t)replay->particle_count;
     size_t paths = (size_t)replay->path_count;
-    float box[2][3];
-    *size = before + sizeof box + paths * (1 + CODE_BITS / 8 * count);
+    *size = before + paths * (1 + BOX_BYTES + CODE_BITS / 8 * count);
     *packed = malloc(*size);
-    uint32_t *codes = malloc((paths * count + 1) * sizeof *codes);
-    if (!*packed || !codes) {
-        free(codes);
+    uint32_t *first = malloc(2 * (count + 1) * sizeof *first), *codes = first + count;
+    if (!*packed || !first) {
+        free(first);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
-    find_box(replay, box);
-    for (size_t i = 0; i < paths * count; i++) codes[i] = code_of(position_at(replay, i), box, i % 3);
     memcpy(*packed, replay->bytes, before);
-    memcpy(*packed + before, box, sizeof box);
-    char *out = *packed + before + sizeof box;
-    for (size_t i = 0; i < paths; i++) out = pack_path(out, codes + i * count, codes, count, width);
+    char *out = *packed + before;
+    float common[2][3], own[2][3];
+    if (paths) find_box(replay, find_whole(replay), 1e6f, common);
+    for (size_t path = 0; path < paths; path++) {
+        bool is_near = fits(replay, path, common);
+        // what blows up is followed for a hundred times the size of what does not
+        if (!is_near) find_box(replay, path, 100 * (common[1][0] - common[0][0]), own);
+        const float(*box)[3] = is_near ? common : own;
+        uint32_t *now = path ? codes : first;
+        for (size_t i = 0; i < count; i++) now[i] = code_of(position_at(replay, path * count + i), box, i % 3);
+        out = pack_path(out, now, path && is_near ? first : NULL, box, count, width);
+    }
     assert(out == *packed + *size);
-    free(codes);
+    free(first);
     return CK_OK;
 }

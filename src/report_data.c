@@ -4,15 +4,17 @@
 #include "path.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 // What stands for a scene's error: of these the one that most engines have an error of, the first where several do.
-// Energy, jitter and the like are no answers.
-static const char *const answers[] = {"position_rms",  "sag",           "friction",        "restitution", "rest_height",
-                                      "wrap_friction", "contact_force", "penetration_max", "tunnelled"};
+// Energy, jitter, penetration and the like are conditions, and no answers.
+static const char *const answers[] = {"position_rms", "sag",           "friction",     "restitution",
+                                      "rest_height",  "wrap_friction", "contact_force"};
+#define LONGEST_NAME 100
 #define ANSWERS ((int)(sizeof answers / sizeof *answers))
 
 const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name) {
@@ -40,7 +42,7 @@ static ck_Status add_name(const char ***names, int *count, const char *name, ck_
 static bool is_plain(const char *name) {
     for (const char *letter = name; *letter; letter++)
         if (!isalnum((unsigned char)*letter) && !strchr("_-.", *letter)) return false;
-    return *name != '.';
+    return *name != '.' && strlen(name) <= LONGEST_NAME;
 }
 
 static ck_Status add_column(ck_ReportData *data, const ck_CsvTable *table, const char *column_name, const char ***names,
@@ -52,10 +54,11 @@ static ck_Status add_column(ck_ReportData *data, const ck_CsvTable *table, const
     for (int row = 0; row < table->row_count && !status; row++) {
         const char *name = ck_csv_table_text(table, row, column);
         if (row && !strcmp(name, ck_csv_table_text(table, row - 1, column))) continue;
-        if (!*name || !strcmp(name, "truth")) continue;
+        bool is_truth = !strcmp(column_name, "engine") && !strcmp(name, "truth");
+        if (!*name || is_truth) continue;
         if (!is_plain(name))
             return ck_fail(error, CK_BAD_INPUT,
-                           "%s/%s: row %d, column %d (%s): '%.60s' must be of letters, digits, _, - and .",
+                           "%s/%s: row %d, column %d (%s): '%.60s' must be of at most 100 letters, digits, _, - and .",
                            data->directory, table->layout->file, row + 1, column + 1, column_name, name);
         status = add_name(names, count, name, error);
     }
@@ -65,6 +68,8 @@ static ck_Status add_column(ck_ReportData *data, const ck_CsvTable *table, const
 static ck_Status read_tables(ck_ReportData *data, ck_Error *error) {
     ck_Status status = CK_OK;
     int found = 0;
+    if (access(data->directory, R_OK | X_OK))
+        return ck_fail(error, CK_BAD_INPUT, "%s: %s", data->directory, strerror(errno));
     for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++) {
         char *path = ck_path_join(data->directory, ck_layouts[i].file);
         if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -129,6 +134,8 @@ static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int
         .metric = "",
         .error = NAN,
         .uncertainty = NAN,
+        .told = NAN,
+        .timed = ck_csv_table_number(runs, row, ck_layout_column(layout, "simulated_s")),
         .cost = ck_csv_table_number(runs, row, ck_layout_column(layout, "cpu_median_s")) /
                 ck_csv_table_number(runs, row, ck_layout_column(layout, "simulated_s")),
     };
@@ -137,27 +144,52 @@ static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int
     one.metric = ck_csv_table_text(metrics, answer, 2);
     one.error = ck_csv_table_number(metrics, answer, ck_layout_column(metrics->layout, "error"));
     one.uncertainty = ck_csv_table_number(metrics, answer, ck_layout_column(metrics->layout, "truth_uncertainty"));
+    one.told = one.uncertainty > one.error ? one.uncertainty : one.error;
     return one;
 }
 
-// Errors that the truth cannot tell apart are alike.
-static double told_error(const ck_Summary *one) {
-    return fmax(one->error, isnan(one->uncertainty) ? 0 : one->uncertainty);
+// null moves nothing: it shows what the harness costs, and what an error is worth.
+static bool is_null(const ck_Summary *one) {
+    return !strcmp(one->engine, "null");
 }
 
-// null moves nothing: it shows what the harness costs.
-static bool is_candidate(const ck_Summary *one) {
-    return strcmp(one->engine, "null") && !strcmp(one->status, "ok") && !isnan(one->error) && !isnan(one->cost);
+bool ck_summary_counts(const ck_Summary *one) {
+    return !is_null(one) && one->is_better && !strcmp(one->status, "ok") && !isnan(one->told) && one->cost > 0;
 }
 
+// An error that is not half of what moving nothing has answers nothing, unless nothing is what should move.
+static void set_beside(const ck_ReportData *data, ck_Summary *one) {
+    one->duration = one->timed;
+    one->is_better = true;
+    for (int i = 0; i < data->summary_count; i++) {
+        const ck_Summary *other = &data->summary[i];
+        if (strcmp(other->scene, one->scene)) continue;
+        one->duration = fmax(one->duration, other->timed);
+        bool tells = is_null(other) && other->error > 1e-9 && !(other->error <= other->uncertainty);
+        if (tells && one->error > 0.5 * other->error) one->is_better = is_null(one);
+    }
+}
+
+// Errors within a twentieth of each other are alike: at the floor of a truth they differ by rounding.
 static bool is_beaten(const ck_ReportData *data, const ck_Summary *one) {
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *other = &data->summary[i];
-        if (other != one && is_candidate(other) && !strcmp(other->scene, one->scene) && other->cost < one->cost &&
-            told_error(other) <= told_error(one))
+        if (other != one && ck_summary_counts(other) && !strcmp(other->scene, one->scene) && other->cost < one->cost &&
+            other->told <= 1.05 * one->told)
             return true;
     }
     return false;
+}
+
+static ck_Status check_runs(const ck_ReportData *data, ck_Error *error) {
+    for (int i = 0; i < data->summary_count; i++)
+        for (int j = 0; j < i; j++)
+            if (!strcmp(data->summary[i].engine, data->summary[j].engine) &&
+                !strcmp(data->summary[i].scene, data->summary[j].scene))
+                return ck_fail(error, CK_BAD_INPUT, "%s/%s: rows %d and %d are both of %s on %s; keep one of them",
+                               data->directory, ck_layouts[CK_RUNS].file, j + 1, i + 1, data->summary[i].engine,
+                               data->summary[i].scene);
+    return CK_OK;
 }
 
 static ck_Status find_summary(ck_ReportData *data, ck_Error *error) {
@@ -166,9 +198,10 @@ static ck_Status find_summary(ck_ReportData *data, ck_Error *error) {
     data->summary = calloc((size_t)runs->row_count + 1, sizeof *data->summary);
     if (!data->summary) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     for (int row = 0; row < runs->row_count; row++) data->summary[data->summary_count++] = sum_up(data, runs, row);
+    for (int i = 0; i < data->summary_count; i++) set_beside(data, &data->summary[i]);
     for (int i = 0; i < data->summary_count; i++)
-        data->summary[i].on_front = is_candidate(&data->summary[i]) && !is_beaten(data, &data->summary[i]);
-    return CK_OK;
+        data->summary[i].on_front = ck_summary_counts(&data->summary[i]) && !is_beaten(data, &data->summary[i]);
+    return check_runs(data, error);
 }
 
 ck_Status ck_report_data_read(ck_ReportData *data, const char *directory, ck_Error *error) {

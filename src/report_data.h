@@ -11,7 +11,10 @@ typedef struct ck_Summary {
     const char *scene, *engine, *status;
     const char *metric;        // that stands for its error; "" where nothing has a truth
     double error, uncertainty; // of that metric, in its unit; NaN: not known
+    double told;               // the error, or the uncertainty where that is larger: what is known of it
     double cost;               // s of CPU per simulated second; NaN: not timed
+    double timed, duration;    // s that the cost is of, and the longest that any engine on the scene was timed
+    bool is_better;            // than what moves nothing; true where there is no telling
     bool on_front;             // no engine is both cheaper and as near to the truth, of those that ended ok
 } ck_Summary;
 
@@ -36,6 +39,10 @@ void ck_report_data_free(ck_ReportData *data);
 
 // NULL where the file is not there.
 const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name);
+
+// True where a run says something of its engine: it ended ok, its error is known and better than moving nothing, and it
+// was timed.
+bool ck_summary_counts(const ck_Summary *one);
 
 // Where the engine is in data->engines.
 int ck_report_engine(const ck_ReportData *data, const char *engine);

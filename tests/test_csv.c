@@ -48,6 +48,12 @@ static void test_bad_files(void **state) {
         {HEADER "a,b,ok,sag,1,1\na,b,ok,sag,1", "metrics.csv:3: the line has no end: the file is cut off"},
         {HEADER "a,b,ok,\"sag,1,1\n", "metrics.csv:2: a quoted field has no end: the file is cut off"},
         {HEADER "a,b\"c,ok,sag,1,1\n", "metrics.csv:2: column 2: "},
+        {"\n", "metrics.csv:1: the line is empty"},
+        {HEADER "\na,b,ok,sag,1,1\n", "metrics.csv:2: the line is empty"},
+        {HEADER "a,b,ok,sag,1,1\r\n", "metrics.csv:2: there is a carriage return"},
+        {HEADER "a,b,ok,sag,0x10,1\n", "metrics.csv:2: column 5 (value): must be a number"},
+        {HEADER "a,b,ok,sag, 1,1\n", "metrics.csv:2: column 5 (value): must be a number"},
+        {HEADER "a,b,ok,sag,nan,1\n", "metrics.csv:2: column 5 (value): must be a number"},
         {"PK\003\004 no table\n", "metrics.csv:1: column 1 is 'PK"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -77,8 +77,16 @@ static void test_bad_files(void **state) {
         {"truncate -s 0 metrics.csv", "metrics.csv:1: the file is empty"},
         {"cp machine.csv runs.csv", "runs.csv:1: column 1 is 'key' where it must be scene"},
         {"sed -i '3s/,ok,/,splendid,/' runs.csv", "runs.csv:3: column 3 (status): must be what a run can end in"},
-        {"sed -i '2s/^bounce/..\\/bounce/' metrics.csv", "column 1 (scene): '../bounce' must be of letters"},
+        {"sed -i '2s/^bounce/..\\/bounce/' metrics.csv",
+         "column 1 (scene): '../bounce' must be of at most 100 letters"},
         {"truncate -s -4 replays/bounce.replay", "bounce.replay: is no whole replay of bounce"},
+        {"sed -i 3p runs.csv", "rows 2 and 3 are both of bullet-pbd on bounce"},
+        {"echo mine >charts/notes.txt", "charts/notes.txt: is no chart; move it away"},
+        {"sed -i 's/^particles 1$/particles 4294967297/' replays/bounce.replay", "is no whole replay"},
+        {"sed -i 's/^columns 0$/columns -1/' replays/bounce.replay", "is no whole replay"},
+        {"sed -i 's/^path truth$/path bullet-pbd/' replays/bounce.replay", "is no whole replay"},
+        {"sed -i 's/^path truth$/path havok/' replays/bounce.replay", "is no whole replay"},
+        {"sed -i 's/^plane .*/plane 0 0 0 0 1 nan/' replays/bounce.replay", "is no whole replay"},
         {"cp replays/rope_hanging.replay replays/bounce.replay", "bounce.replay: is no whole replay of bounce"},
     };
     shell("cp -r %s/whole %s/two", fixture_directory, fixture_directory);
@@ -108,6 +116,25 @@ static void test_no_gnuplot(void **state) {
     assert_int_not_equal(system(command), 0);
     assert_output("gnuplot-nox");
     shell("cd %s && diff -r whole three", fixture_directory);
+}
+
+// Numbers that have no place on an axis cost their dots, not the report.
+static void test_undrawable(void **state) {
+    (void)state;
+    static const char *const changes[] = {
+        "NR > 1 && $2 == \"bullet-pbd\" {$5 = \"\"} 1' series.csv",
+        "NR > 1 {$5 = \"inf\"} 1' series.csv",
+        "NR > 1 {$9 = \"inf\"} 1' metrics.csv",
+        "NR > 1 {$9 = 0; $8 = \"\"} 1' metrics.csv",
+        "NR > 1 {$5 = \"\"} 1' deviations.csv",
+    };
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        const char *file = strrchr(changes[i], ' ') + 1;
+        shell("cd %s && rm -rf odd && cp -r whole odd && cd odd && awk -F, -v OFS=, '%s >changed && mv changed %s",
+              fixture_directory, changes[i], file);
+        int status = program("report %s/%s", "odd");
+        if (status) fail_msg("%s: exit status %d", changes[i], status);
+    }
 }
 
 // Any one CSV is enough for its charts.
@@ -149,8 +176,8 @@ static void test_replay(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_report),       cmocka_unit_test(test_bad_files), cmocka_unit_test(test_no_gnuplot),
-        cmocka_unit_test(test_single_files), cmocka_unit_test(test_replay),
+        cmocka_unit_test(test_report),     cmocka_unit_test(test_bad_files),    cmocka_unit_test(test_no_gnuplot),
+        cmocka_unit_test(test_undrawable), cmocka_unit_test(test_single_files), cmocka_unit_test(test_replay),
     };
     return cmocka_run_group_tests(tests, make_comparison, fixture_remove_directory);
 }

@@ -15,6 +15,9 @@ add(list, word) = strstrt(list.' ', ' '.word.' ') ? list : list.' '.word
 present = ''
 stats data using (present = add(present, strcol(1)), 0) skip 1 nooutput
 
+# the largest number of a column that may have none: then it stays -1
+larger(most, text) = real(text) > most ? real(text) : most
+
 # where a word stands in a list, from 1
 place_in(list, name) = (sum [i = 1:words(list)] (word(list, i) eq name ? i : 0))
 # one engine's rows of a column

@@ -1,4 +1,5 @@
-# Error against cost over time steps and iterations. Engine, CPU s, error, on its engine's front, on the front.
+# Error against cost over time steps and iterations. Engine, CPU s, error, on its engine's front, on the front, the
+# truth's uncertainty.
 set logscale xy
 set format x '10^{%L}'
 set format y '10^{%L}'
@@ -7,6 +8,12 @@ set ylabel 'rms distance to the truth / size'
 do for [level in '0.1 0.01 0.001'] {
 	set arrow from graph 0, first (level + 0) to graph 1, first (level + 0) nohead linecolor '#444444' dashtype 3
 	set label sprintf('%g %%', 100*(level + 0)) at graph 0.995, first (level + 0) right offset 0, 0.5 textcolor '#444444'
+}
+floor = -1
+stats data using (floor = larger(floor, strcol(6)), 0) skip 1 nooutput
+if (floor > 0) {
+	set arrow from graph 0, first floor to graph 1, first floor nohead dashtype 2 linecolor '#444444'
+	set label 'the truth is known to this' at graph 0.01, first floor left offset 0, 0.5 textcolor '#444444'
 }
 set offsets graph 0.02, graph 0.04, graph 0.02, graph 0.05
 plot data using ($5 == 1 ? $2 : NaN):3 skip 1 smooth unique with steps linecolor '#000000' linewidth 2.5 title 'Pareto front', \

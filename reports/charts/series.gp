@@ -1,4 +1,4 @@
-# A metric over time, of all engines and of the truth. In: quantity, what the y axis is called.
+# A metric over time, of all engines and of the truth. Engine, s, value, has a mark. In: quantity, what the y axis is called.
 set xlabel 'time, s'
 set ylabel quantity noenhanced
 
@@ -27,5 +27,7 @@ highest = most < highest + room ? most : highest + room
 margin = 0.03*(highest - lowest) + 1e-12
 set yrange [lowest - margin:highest + margin]
 
-plot for [engine in present] data using (only(engine, column(2))):3 skip 1 \
-	with linespoints linetype place(engine) pointinterval 24 pointsize 0.7 title engine noenhanced
+plot for [engine in present] data using (only(engine, column(2))):3 skip 1 with lines linetype place(engine) notitle, \
+	for [engine in present] data using (only(engine, $4 == 1 ? column(2) : NaN)):3 skip 1 \
+		with points linetype place(engine) pointsize 0.9 notitle, \
+	for [engine in present] NaN with linespoints linetype place(engine) title engine noenhanced

@@ -41,7 +41,7 @@ set bmargin at screen 0.01
 set tmargin at screen 0.08
 set yrange [0:1]
 set xrange [0:1]
-set key center center horizontal maxcols 6 maxrows 2 samplen 2 width 1
+set key center center horizontal maxcols 6 maxrows 2 samplen 4 width 2
 plot for [i = 1:words(states)] (strstrt(found.' ', ' '.word(states, i).' ') ? 2 : NaN) with points pointtype int(word(marks, i)) \
 		linecolor rgb word(shades, i) title (strstrt(found.' ', ' '.word(states, i).' ') ? word(states, i) : '') noenhanced, \
 	2 with lines linecolor '#000000' linewidth 2 dashtype 2 title 'limit by theory', \

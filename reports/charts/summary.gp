@@ -1,4 +1,5 @@
-# Which engine is good for which scene. Scene, engine, status, metric, error, uncertainty, ms, class, cheapest, on front.
+# Which engine is good for which scene. Scene, engine, status, metric, error, uncertainty, ms, s timed, s of the longest,
+# class, cheapest, on front, better than moving nothing.
 scenes = ''
 stats data using (scenes = add(scenes, strcol(1)), 0) skip 1 nooutput
 shown = ''
@@ -10,15 +11,19 @@ set ytics () noenhanced
 do for [i = 1:words(shown)] { set xtics add (word(shown, i) i) }
 do for [i = 1:words(scenes)] { set ytics add (word(scenes, i) i) }
 unset grid
-set key below maxrows 2 samplen 1.5
-shades = '#1f6f4a #7fb89a #d9ead3'
-sign(class, error, status) = class <= 3 ? sprintf('%.0e', error) : class == 4 ? 'no truth' : status
+set key below maxrows 2 samplen 1.5 width 1
+shades = '#1f6f4a #7fb89a #d9ead3 #f7e3d4 #ffffff #f0c4c4 #ededed'
+kinds = '0 1 2 3 5 6'
+meanings = 'error≤0.1% ≤1% ≤10% worse failed not_to_be_had'
+spaced(text) = text eq 'not_to_be_had' ? 'not to be had' : text
+# a number that is missing would take its row away
+sign(class, error, status) = class <= 3 ? sprintf('%.0e', real(error)) : class == 4 ? (error eq 'nan' ? 'no truth' : sprintf('%.0e', real(error))) : status
 column_of(name) = place_in(shown, name)
 row_of(name) = place_in(scenes, name)
 set style fill solid 1 border linecolor '#bbbbbb'
-plot for [i = 0:2] data using ($8 == i ? column_of(strcol(2)) : NaN):(row_of(strcol(1))):(0.5):(0.48) skip 1 \
-		with boxxyerror fillcolor rgb word(shades, i + 1) title 'error '.word('≤0.1% ≤1% ≤10%', i + 1), \
-	data using (column_of(strcol(2))):(row_of(strcol(1))):(sign($8, $5, strcol(3))):($8 == 0 ? 0xffffff : 0x000000) skip 1 \
-		with labels font ',9' textcolor rgb variable noenhanced notitle, \
-	data using ($9 == 1 ? column_of(strcol(2)) - 0.4 : NaN):(row_of(strcol(1))) skip 1 with points pointtype 3 pointsize 0.9 \
+plot for [i = 1:words(kinds)] data using ($10 == int(word(kinds, i)) ? column_of(strcol(2)) : NaN):(row_of(strcol(1))):(0.5):(0.48) skip 1 \
+		with boxxyerror fillcolor rgb word(shades, int(word(kinds, i)) + 1) title spaced(word(meanings, i)) noenhanced, \
+	data using (column_of(strcol(2))):(row_of(strcol(1))):(sign($10, strcol(5), strcol(3))):($10 == 0 ? 0xffffff : 0x000000) skip 1 \
+		with labels font ',8' textcolor rgb variable noenhanced notitle, \
+	data using ($11 == 1 ? column_of(strcol(2)) - 0.4 : NaN):(row_of(strcol(1))) skip 1 with points pointtype 3 pointsize 0.9 \
 		linecolor '#000000' linewidth 2 title 'cheapest within 1 %'

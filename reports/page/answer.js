@@ -1,23 +1,49 @@
 // The question that the page is opened for: which solver for a scene, within an error, and at what cost.
 
-// Every way to run a scene that was measured: {engine, settings, error, cost}, cost in ms of CPU per simulated second.
-async function waysToRun(scene) {
-	const precision = await table("precision.csv");
+// A scene's rows of summary.csv: {metric, uncertainty, nothing: the error of moving nothing, rows}.
+async function factsOf(scene) {
 	const summary = await table("summary.csv");
-	const tried = (precision ? precision.rows : []).filter((row) => row.scene === scene && row.status === "ok")
-		.map((row) => ({
-			engine: row.engine, error: number(row.error), cost: 1e3 * number(row.cpu_s) / number(row.simulated_s),
-			substeps: number(row.substeps), iterations: number(row.iterations),
-		}));
+	const rows = (summary ? summary.rows : []).filter((row) => row.scene === scene && row.engine !== "null");
+	const named = rows.find((row) => row.metric) || {};
+	return { metric: named.metric || "position_rms", uncertainty: number(named.uncertainty) || 0, rows };
+}
+
+// What was tried in the precision study: {engine, source, error, told, cost in ms of CPU per simulated second, …}.
+async function triedWays(scene, facts) {
+	const precision = await table("precision.csv");
+	if (!precision || facts.metric !== "position_rms") return [];
+	return precision.rows.filter((row) => row.scene === scene && row.status === "ok").map((row) => ({
+		engine: row.engine, source: "precision.csv", error: number(row.error),
+		told: Math.max(number(row.error), facts.uncertainty), cost: 1e3 * number(row.cpu_s) / number(row.simulated_s),
+		substeps: number(row.substeps), iterations: number(row.iterations),
+	}));
+}
+
+// What the comparison ran at automatic settings.
+async function automaticWays(scene, facts) {
 	const runs = await table("runs.csv");
-	const automatic = (summary ? summary.rows : []).filter((row) => row.scene === scene && row.status === "ok").map((row) => {
+	return facts.rows.filter((row) => row.status === "ok" && row.is_better === "1").map((row) => {
 		const run = runs.rows.find((other) => other.scene === scene && other.engine === row.engine);
+		const part = isPart(row) ? `, of which ${readable(number(row.timed_s))} of ${readable(number(row.duration_s))} s were timed` : "";
 		return {
-			engine: row.engine, error: number(row.error), cost: number(row.cpu_ms_per_s), metric: row.metric,
+			engine: row.engine, source: "runs.csv" + part, error: number(row.error),
+			told: Math.max(number(row.error), facts.uncertainty), cost: number(row.cpu_ms_per_s),
 			substeps: number(run.substeps), iterations: number(run.iterations),
 		};
 	});
-	return [...tried, ...automatic].filter((way) => way.engine !== "null" && way.error >= 0 && way.cost > 0);
+}
+
+// Every way to run a scene: of an engine those of the study where it was in it, for they time the whole scene.
+async function waysToRun(scene, facts) {
+	const tried = await triedWays(scene, facts), studied = new Set(tried.map((way) => way.engine));
+	const automatic = (await automaticWays(scene, facts)).filter((way) => !studied.has(way.engine));
+	return [...tried, ...automatic].filter((way) => way.error >= 0 && way.cost > 0);
+}
+
+// A setting counts where finer steps do no worse: else errors that cancel by chance would be recommended.
+function holds(way, ways, tolerance) {
+	return ways.every((other) => other.engine !== way.engine || other.iterations !== way.iterations ||
+		other.substeps < way.substeps || other.told <= tolerance);
 }
 
 // Each engine's cheapest way within an error, cheapest first; and of those that have none, the nearest.
@@ -25,7 +51,7 @@ function bestWays(ways, tolerance) {
 	const within = new Map(), beyond = new Map();
 	for (const way of ways) {
 		const best = within.get(way.engine), nearest = beyond.get(way.engine);
-		if (way.error <= tolerance && (!best || way.cost < best.cost)) within.set(way.engine, way);
+		if (holds(way, ways, tolerance) && (!best || way.cost < best.cost)) within.set(way.engine, way);
 		if (!nearest || way.error < nearest.error) beyond.set(way.engine, way);
 	}
 	for (const engine of within.keys()) beyond.delete(engine);
@@ -40,13 +66,16 @@ function settingsText(way) {
 	return way.iterations > 0 ? `${substeps}, ${way.iterations} iteration${way.iterations === 1 ? "" : "s"}` : substeps;
 }
 
-function answerText(scene, tolerance, { within, beyond }) {
+function answerText(scene, tolerance, { within, beyond }, facts) {
+	if (!within.length && facts.uncertainty > tolerance)
+		return [`The truth of ${scene} is only known to ${percent(facts.uncertainty)}: nobody can say.`];
+	if (!within.length && !beyond.length) return [`No engine has an answer on ${scene}: the table says why.`];
 	if (!within.length)
-		return [`No engine comes within ${percent(tolerance)} on ${scene}`,
-			beyond.length ? `; nearest is ${beyond[0].engine}, ${percent(beyond[0].error)} off.` : "."];
+		return [`No engine comes within ${percent(tolerance)} on ${scene}; nearest is ${beyond[0].engine}, ${percent(beyond[0].error)} off.`];
 	const [best, next] = within;
 	const text = [element("strong", { textContent: best.engine }), ` at ${settingsText(best)} a frame: an error of `,
-		`${percent(best.error)} for ${readable(Number(best.cost.toPrecision(3)))} ms of CPU per simulated second.`];
+		`${percent(best.error)} in ${facts.metric} for ${readable(Number(best.cost.toPrecision(3)))} ms of CPU per simulated second.`];
+	if (facts.uncertainty > best.error) text.push(` (The truth is known to ${percent(facts.uncertainty)}.)`);
 	if (next) text.push(` Next is ${next.engine} at ${(next.cost / best.cost).toPrecision(2)} times that.`);
 	return text;
 }
@@ -55,34 +84,44 @@ function answerRow(way, best, isWithin) {
 	const yaml = `${way.engine}: {substeps: ${way.substeps}${way.iterations > 0 ? `, iterations: ${way.iterations}` : ""}}`;
 	return {
 		engine: way.engine, within: isWithin ? "yes" : "no", error: String(way.error), "ms CPU per s": String(way.cost),
-		"times the cheapest": best ? String(way.cost / best.cost) : "", settings: yaml,
+		"times the cheapest": best ? String(way.cost / best.cost) : "", settings: yaml, "measured in": way.source,
 	};
+}
+
+// Engines that have no way at all, and why.
+function otherRows(facts, best) {
+	const shown = new Set([...best.within, ...best.beyond].map((way) => way.engine));
+	return facts.rows.filter((row) => !shown.has(row.engine)).map((row) => ({
+		engine: row.engine, within: row.status !== "ok" ? row.status : row.error === "nan" ? "no truth" : "no better than null",
+		error: row.error === "nan" ? "" : row.error, "ms CPU per s": "", "times the cheapest": "", settings: "", "measured in": "runs.csv",
+	}));
 }
 
 async function showAnswer() {
 	const scene = document.getElementById("answer-scene").value;
 	const tolerance = Number(document.getElementById("answer-error").value);
-	const best = bestWays(await waysToRun(scene), tolerance);
+	const facts = await factsOf(scene);
+	const best = bestWays(await waysToRun(scene, facts), tolerance);
 	const rows = [...best.within.map((way) => answerRow(way, best.within[0], true)),
-		...best.beyond.map((way) => answerRow(way, best.within[0], false))];
-	document.getElementById("answer-text").replaceChildren(...answerText(scene, tolerance, best));
+		...best.beyond.map((way) => answerRow(way, best.within[0], false)), ...otherRows(facts, best)];
+	document.getElementById("answer-text").replaceChildren(...answerText(scene, tolerance, best, facts));
 	document.getElementById("answer-table").replaceChildren(csvTable(
-		["engine", "within", "error", "ms CPU per s", "times the cheapest", "settings"], rows,
-		"Each engine's cheapest settings within that error, of those that were measured; for the others, the nearest they came"));
+		["engine", "within", "error", "ms CPU per s", "times the cheapest", "settings", "measured in"], rows,
+		"Each engine's cheapest settings from which on finer steps stay within that error, of those that were measured; for the others, the nearest they came"));
 }
 
 async function startAnswer() {
 	const precision = await table("precision.csv");
 	const summary = await table("summary.csv");
 	const studied = new Set(precision ? precision.rows.map((row) => row.scene) : []);
-	const measured = new Set((summary ? summary.rows : []).filter((row) => row.error !== "nan" && row.error !== "").map((row) => row.scene));
+	const measured = new Set((summary ? summary.rows : []).filter((row) => row.metric).map((row) => row.scene));
 	const names = report.scenes.map((scene) => scene.name).filter((name) => studied.has(name) || measured.has(name));
 	if (!names.length) return;
 	const select = document.getElementById("answer-scene");
 	const first = ["cloth_two_corners", ...studied].find((name) => names.includes(name));
 	fillSelect(select, names, first);
 	document.getElementById("answer").hidden = false;
-	select.addEventListener("change", showAnswer);
-	document.getElementById("answer-error").addEventListener("change", showAnswer);
+	for (const input of [select, document.getElementById("answer-error")])
+		input.addEventListener("change", () => showAnswer().catch(showTrouble));
 	await showAnswer();
 }

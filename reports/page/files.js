@@ -46,5 +46,6 @@ async function table(name) {
 
 // A number of a field; NaN where it is empty.
 function number(text) {
-	return text === "" || text === undefined ? NaN : text === "inf" ? Infinity : Number(text);
+	if (text === "" || text === undefined) return NaN;
+	return text === "inf" ? Infinity : text === "-inf" ? -Infinity : Number(text);
 }

@@ -9,7 +9,7 @@ async function startMachine() {
 }
 
 // A file that the page carries is saved from it, a larger one is beside the page.
-function startDownloads() {
+async function startDownloads() {
 	const list = document.getElementById("download-list");
 	for (const { file, rows, about } of report.tables) {
 		const link = element("a", { href: file, textContent: file, download: file });
@@ -20,27 +20,32 @@ function startDownloads() {
 				link.href = URL.createObjectURL(new Blob([await fileBytes(file)], { type: "text/csv" }));
 				link.click();
 			});
-		list.append(element("li", {}, link, `: ${about}, ${rows} rows`));
+		const place = document.getElementById("file:" + file) ? "" : ", in a file beside this page";
+		list.append(element("li", {}, link, `: ${about}, ${rows} rows${place}`));
 	}
 }
 
 async function startPage() {
-	await startMachine();
-	await startAnswer();
 	const replay = new Replay();
-	await startSummary((scene) => showScene(scene, replay));
-	await startFailures();
-	startDownloads();
-	if (report.scenes.length) {
-		const select = document.getElementById("scene-select");
-		const names = report.scenes.map((scene) => scene.name);
-		fillSelect(select, names, "cloth_two_corners");
-		select.addEventListener("change", () => showScene(select.value, replay));
-		document.getElementById("scene").hidden = false;
-		await showScene(select.value, replay);
-	}
-	await startGeneral();
+	const parts = [startMachine, startAnswer, () => startSummary((scene) => showScene(scene, replay)), startFailures,
+		startDownloads, () => startScene(replay), startGeneral];
+	for (const part of parts) await part().catch(showTrouble);
 	document.body.dataset.ready = "yes";
+}
+
+// What one part of the page cannot show leaves the others as they are.
+function showTrouble(error) {
+	document.querySelector("main").prepend(element("p", { role: "alert", textContent: `A part of this page failed: ${error.message}` }));
+}
+
+async function startScene(replay) {
+	const select = document.getElementById("scene-select");
+	const names = report.scenes.map((scene) => scene.name);
+	if (!names.length) return;
+	fillSelect(select, names, "cloth_two_corners");
+	select.addEventListener("change", () => showScene(select.value, replay).catch(showTrouble));
+	document.getElementById("scene").hidden = false;
+	await showScene(select.value, replay);
 }
 
 startPage();

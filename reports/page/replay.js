@@ -67,6 +67,7 @@ class Replay {
 		const truth = rows.map((row) => number(row.truth)).find((value) => value > 0);
 		const range = truth || values[Math.floor(values.length / 2)] || 0.01;
 		const scale = document.getElementById("replay-scale");
+		scale.hidden = !this.data.rests.length;
 		const ramp = element("span");
 		ramp.style.background = "linear-gradient(90deg, rgb(219,214,204), rgb(128,10,26))";
 		scale.replaceChildren("strain of a particle's most stretched spring: 0", ramp, percent(range) + " and more");
@@ -112,7 +113,7 @@ class Replay {
 	draw() {
 		const time = Number(this.slider.value), engines = this.shownEngines();
 		const isOver = document.getElementById("replay-layout").value === "over";
-		const byEngine = document.getElementById("replay-color").value === "engine";
+		const byEngine = document.getElementById("replay-color").value === "engine" || !this.data.rests.length;
 		document.getElementById("replay-now").textContent = time.toFixed(3) + " s";
 		for (const [name, body] of this.bodies) {
 			showBody(this.data, body, this.data.paths.get(name), time);
@@ -153,7 +154,7 @@ class Replay {
 	// Names stand over the views, as text that can be read and selected.
 	label(views, columns, rows, isOver) {
 		const layer = document.getElementById("replay-labels");
-		const text = (name) => [engineName(name), this.bodies.get(name).group.visible ? "" : " (not there)"];
+		const text = (name) => [engineName(name), this.bodies.get(name).group.visible ? "" : " (ended)"];
 		const key = JSON.stringify([views, columns, rows, views.flat().map((name) => this.bodies.get(name).group.visible)]);
 		if (layer.dataset.key === key) return;
 		layer.dataset.key = key;

@@ -36,7 +36,7 @@ function parseHeader(text) {
 	return header;
 }
 
-// {columns, particles, planes, spheres, times, springs, rests, least, largest, paths: Map of name to positions}
+// {columns, particles, planes, spheres, times, springs, rests, paths: Map of name to positions}
 function parseReplay(buffer) {
 	const bytes = new Uint8Array(buffer);
 	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 8192));
@@ -52,16 +52,15 @@ function parseReplay(buffer) {
 	replay.times = take(Float32Array, replay.frames);
 	replay.springs = take(Int32Array, 2 * replay.springs);
 	replay.rests = take(Float32Array, replay.springs.length / 2);
-	replay.least = take(Float32Array, 3);
-	replay.largest = take(Float32Array, 3);
 	replay.paths = new Map();
 	const width = 3 * replay.particles, count = replay.frames * width;
 	let first = null;
 	for (const name of names) {
 		const isLed = take(Uint8Array, 1)[0] === 1;
+		const least = take(Float32Array, 3), largest = take(Float32Array, 3);
 		const codes = unpackCodes(take(Uint8Array, 3 * count), isLed ? first : null, width);
 		first ??= codes;
-		replay.paths.set(name, positionsOf(codes, replay.least, replay.largest));
+		replay.paths.set(name, positionsOf(codes, least, largest));
 	}
 	return replay;
 }

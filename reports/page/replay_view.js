@@ -59,7 +59,7 @@ function makeBody(replay, ghost) {
 	if (replay.springs.length && !isSurface)
 		group.add(new THREE.LineSegments(bodyGeometry(replay, positions, colors, lineEnds(replay)), new THREE.LineBasicMaterial(look)));
 	if (replay.particles <= 64)
-		group.add(new THREE.Points(bodyGeometry(replay, positions, colors), new THREE.PointsMaterial({ ...look, size: 6, sizeAttenuation: false })));
+		group.add(new THREE.Points(bodyGeometry(replay, positions, colors), new THREE.PointsMaterial({ ...look, size: ghost ? 14 : 8, sizeAttenuation: false })));
 	return { group, positions, colors };
 }
 
@@ -99,9 +99,9 @@ function showBody(replay, body, path, time) {
 
 function makeColliders(replay) {
 	const group = new THREE.Group();
-	const size = Math.max(...[0, 1, 2].map((axis) => replay.largest[axis] - replay.least[axis]));
+	const size = boundsOf(replay, [...replay.paths.keys()].slice(-1)).getSize(new THREE.Vector3()).length();
 	for (const [x, y, z, radius] of replay.spheres) {
-		const ball = new THREE.Mesh(new THREE.SphereGeometry(radius, 24, 16),
+		const ball = new THREE.Mesh(new THREE.SphereGeometry(0.99 * radius, 24, 16),
 			new THREE.MeshBasicMaterial({ color: 0x9aa7b5, wireframe: true, transparent: true, opacity: 0.5 }));
 		ball.position.set(x, y, z);
 		group.add(ball);

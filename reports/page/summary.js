@@ -1,7 +1,18 @@
 // The matrix of scenes and engines, and the list of what failed.
 
 const classSigns = ["✓✓", "✓", "~", "✗", "", "", ""];
-const classWords = ["within 0.1 %", "within 1 %", "within 10 %", "worse than 10 %", "no truth", "failed", "not to be had"];
+const classWords = ["within 0.1 %", "within 1 %", "within 10 %", "worse than 10 %, or no better than moving nothing", "no truth",
+	"failed", "not to be had"];
+
+// True where the truth is known less well than the error is small.
+function isVague(row) {
+	return number(row.uncertainty) > number(row.error);
+}
+
+// True where the cost is of the scene's beginning only, which may be busier or quieter than the rest.
+function isPart(row) {
+	return number(row.timed_s) < 0.7 * number(row.duration_s);
+}
 
 function summaryCell(row) {
 	if (!row) return element("td");
@@ -13,9 +24,10 @@ function summaryCell(row) {
 	made.dataset.status = row.status;
 	const error = number(row.error), cost = number(row.cpu_ms_per_s);
 	if (kind >= 5) made.append(row.status);
-	else made.append(`${classSigns[kind]} ${Number.isNaN(error) ? "no truth" : percent(error)}`);
+	else made.append(`${classSigns[kind]} ${Number.isNaN(error) ? "no truth" : percent(error)}${isVague(row) ? " ?" : ""}`);
 	if (row.is_cheapest === "1") made.append(" ★");
-	if (!Number.isNaN(cost) && kind < 5) made.append(element("small", { textContent: `${readable(Number(cost.toPrecision(3)))} ms` }));
+	if (!Number.isNaN(cost) && kind < 5)
+		made.append(element("small", { textContent: `${isPart(row) ? "≈ " : ""}${readable(Number(cost.toPrecision(3)))} ms` }));
 	return made;
 }
 
