@@ -118,13 +118,14 @@ static bool counts(const ck_JournalRow *row) {
     return row->is_done && row->status == CK_RUN_OK && row->values[ERROR] >= 0 && row->values[CPU] > 0;
 }
 
-// Nobody is both cheaper and as right. Errors below the truth's uncertainty are all alike.
+// Nobody is both cheaper and as right. Errors below the truth's uncertainty are all alike, and so are those within a
+// twentieth of each other: at a floor they differ by rounding.
 static bool is_on_front(const ck_Precision *precision, const ck_JournalRow *rows, int index) {
     double error = fmax(rows[index].values[ERROR], precision->uncertainty), cpu = rows[index].values[CPU];
     for (int i = 0; i < precision->case_count && counts(&rows[index]); i++) {
         if (!counts(&rows[i])) continue;
         double other = fmax(rows[i].values[ERROR], precision->uncertainty);
-        if (other <= error && rows[i].values[CPU] <= cpu && (other < error || rows[i].values[CPU] < cpu)) return false;
+        if (other <= 1.05 * error && rows[i].values[CPU] < cpu) return false;
     }
     return counts(&rows[index]);
 }
