@@ -1,6 +1,7 @@
 #include "chart.h"
 
 #include "child.h"
+#include "file.h"
 #include "path.h"
 
 #include <errno.h>

@@ -5,8 +5,6 @@
 #include "layout.h"
 #include "status.h"
 
-#include <stddef.h>
-
 typedef struct ck_CsvTable {
     const ck_Layout *layout; // NULL: not read
     int row_count, column_count;
@@ -25,8 +23,5 @@ void ck_csv_table_free(ck_CsvTable *table);
 const char *ck_csv_table_text(const ck_CsvTable *table, int row, int column);
 // NaN where the field is empty.
 double ck_csv_table_number(const ck_CsvTable *table, int row, int column);
-
-// Reads a whole file, and a zero after it. Errors: CK_IO, CK_NO_MEMORY. Free *bytes in any case.
-ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *error);
 
 #endif

@@ -2,8 +2,9 @@
 
 #include "chart.h"
 #include "child.h"
+#include "file.h"
 #include "path.h"
-#include "replay.h"
+#include "replay_pack.h"
 
 #include <errno.h>
 #include <nettle/base64.h>

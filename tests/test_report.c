@@ -148,6 +148,17 @@ static void test_single_files(void **state) {
     }
 }
 
+// The charts that README shows are what their CSVs make. gnuplot's SVG is the same on every machine of one version.
+static void test_readme(void **state) {
+    (void)state;
+    static const char *const charts[] = {"cloth_two_corners.precision", "summary", "rope_hanging.stability"};
+    const char *readme = SCENE_DIRECTORY "/../reports/readme";
+    shell("mkdir %s/readme && cp %s/*.csv %s/readme", fixture_directory, readme, fixture_directory);
+    assert_int_equal(program("report %s/%s", "readme"), 0);
+    for (size_t i = 0; i < sizeof charts / sizeof *charts; i++)
+        shell("cmp %s/charts/%s.svg %s/readme/charts/%s.svg", readme, charts[i], fixture_directory, charts[i]);
+}
+
 // A replay holds the runs' own positions: the first frame is the model's start, and as many paths as there are runs.
 static void test_replay(void **state) {
     (void)state;
@@ -176,8 +187,9 @@ static void test_replay(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_report),     cmocka_unit_test(test_bad_files),    cmocka_unit_test(test_no_gnuplot),
-        cmocka_unit_test(test_undrawable), cmocka_unit_test(test_single_files), cmocka_unit_test(test_replay),
+        cmocka_unit_test(test_report),     cmocka_unit_test(test_bad_files), cmocka_unit_test(test_no_gnuplot),
+        cmocka_unit_test(test_undrawable), cmocka_unit_test(test_readme),    cmocka_unit_test(test_single_files),
+        cmocka_unit_test(test_replay),
     };
     return cmocka_run_group_tests(tests, make_comparison, fixture_remove_directory);
 }
