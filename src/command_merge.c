@@ -1,6 +1,7 @@
 #include "command.h"
 #include "study.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,6 +39,13 @@ static const struct Mergeable *find_study(const char *directory, char *question,
     return NULL;
 }
 
+static bool is_among(const char *directory, char *const *parts, int count) {
+    char one[PATH_MAX], other[PATH_MAX];
+    for (int i = 0; i < count; i++)
+        if (realpath(directory, one) && realpath(parts[i], other) && !strcmp(one, other)) return true;
+    return false;
+}
+
 int ck_command_merge(int argc, char **argv) {
     bool asks_help = argc > 1 && !strcmp(argv[1], "--help");
     if (argc < 3 || asks_help) {
@@ -48,6 +56,11 @@ int ck_command_merge(int argc, char **argv) {
     }
     ck_Error error = {0};
     char question[4096];
+    if (is_among(argv[1], argv + 2, argc - 2)) {
+        ck_Status same =
+            ck_fail(&error, CK_BAD_INPUT, "%s: is a part, too; OUT must be a directory of its own", argv[1]);
+        return ck_command_fail(same, &error);
+    }
     const struct Mergeable *study = find_study(argv[2], question, sizeof question);
     ck_Status status =
         study ? CK_OK : ck_fail(&error, CK_BAD_INPUT, "%s: holds no part of a study (NAME.journal)", argv[2]);

@@ -50,3 +50,9 @@ char *fixture_read(const char *name) {
     fclose(file);
     return text;
 }
+
+void fixture_assert_output(const char *wanted) {
+    char *output = fixture_read("output");
+    if (!output || !strstr(output, wanted)) fail_msg("wanted '%s' in: %s", wanted, output ? output : "nothing");
+    free(output);
+}

@@ -15,6 +15,9 @@ pid_t fixture_start(const char *arguments);
 // The same to its end: its exit status. Fails the test where a signal ended it.
 int fixture_program(const char *arguments);
 
+// Fails the test where the last program did not print that.
+void fixture_assert_output(const char *wanted);
+
 // A file of the directory, which the caller frees; NULL where there is none.
 char *fixture_read(const char *name);
 

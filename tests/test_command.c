@@ -7,12 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static void assert_output(const char *wanted) {
-    char *output = fixture_read("output");
-    if (!strstr(output, wanted)) fail_msg("wanted '%s' in: %s", wanted, output);
-    free(output);
-}
-
 static void test_usage(void **state) {
     (void)state;
     static const struct {
@@ -50,7 +44,7 @@ static void test_usage(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         int status = fixture_program(cases[i].arguments);
         if (status != cases[i].status) fail_msg("'%s' ended with %d", cases[i].arguments, status);
-        if (i != sizeof cases / sizeof *cases - 1) assert_output(cases[i].output);
+        if (i != sizeof cases / sizeof *cases - 1) fixture_assert_output(cases[i].output);
     }
 }
 
@@ -62,7 +56,7 @@ static void test_bad_input_writes_nothing(void **state) {
     snprintf(out, sizeof out, "%s/none", fixture_directory);
     snprintf(arguments, sizeof arguments, "compare oscillator %s --out %s", bad, out);
     assert_int_equal(fixture_program(arguments), 2);
-    assert_output(":2:40: rope.mass is 0; it must be a number above 0");
+    fixture_assert_output(":2:40: rope.mass is 0; it must be a number above 0");
     assert_int_not_equal(access(out, F_OK), 0);
     unlink(bad);
     free(bad);
@@ -71,13 +65,13 @@ static void test_bad_input_writes_nothing(void **state) {
 static void test_two_scenes_of_one_name(void **state) {
     (void)state;
     assert_int_equal(fixture_program("compare oscillator scenes/oscillator.yaml"), 2);
-    assert_output("both named oscillator");
+    fixture_assert_output("both named oscillator");
 }
 
 static void test_unwritable_output(void **state) {
     (void)state;
     assert_int_equal(fixture_program("compare oscillator --repeats 0 --out /proc/none"), 1);
-    assert_output("/proc/none: ");
+    fixture_assert_output("/proc/none: ");
 }
 
 // The six files, whole, with the columns of the contract; and twice the same bytes in four of them.

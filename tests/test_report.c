@@ -33,17 +33,11 @@ static int make_comparison(void **state) {
         "whole");
 }
 
-static void assert_output(const char *wanted) {
-    char *output = fixture_read("output");
-    if (!strstr(output, wanted)) fail_msg("wanted '%s' in: %s", wanted, output);
-    free(output);
-}
-
 static void test_report(void **state) {
     (void)state;
     shell("cp -r %s/whole %s/one", fixture_directory, fixture_directory);
     assert_int_equal(program("report %s/%s", "one"), 0);
-    assert_output("/one/index.html\n");
+    fixture_assert_output("/one/index.html\n");
     char *page = fixture_read("one/index.html");
     assert_non_null(page);
     // whatever is fetched would be named by src=, href= or url( with an address
@@ -96,12 +90,12 @@ static void test_bad_files(void **state) {
               cases[i].change);
         int status = program("report %s/%s", "bad");
         if (status != 2) fail_msg("'%s': exit status %d", cases[i].change, status);
-        assert_output(cases[i].output);
+        fixture_assert_output(cases[i].output);
         shell("cd %s && diff -r wanted bad", fixture_directory);
     }
     shell("mkdir %s/empty", fixture_directory);
     assert_int_equal(program("report %s/%s", "empty"), 2);
-    assert_output("holds no CSV of a comparison or study");
+    fixture_assert_output("holds no CSV of a comparison or study");
     assert_int_equal(program("report %s/%s", "nowhere"), 2);
     assert_int_equal(fixture_program("report"), 2);
     assert_int_equal(fixture_program("report --help"), 0);
@@ -114,7 +108,7 @@ static void test_no_gnuplot(void **state) {
     snprintf(command, sizeof command, "cp -r %s/whole %s/three && PATH=/nowhere %s report %s/three 2>%s/output",
              fixture_directory, fixture_directory, PROGRAM, fixture_directory, fixture_directory);
     assert_int_not_equal(system(command), 0);
-    assert_output("gnuplot-nox");
+    fixture_assert_output("gnuplot-nox");
     shell("cd %s && diff -r whole three", fixture_directory);
 }
 

@@ -86,6 +86,8 @@ static void test_shards(void **state) {
     finish("stability rope_catenary --engine native-verlet --shard 1/2 --out %s/other", 0);
     finish("merge %s/none %s/1 %s/other", 2);
     finish("merge %s/none %s/empty", 2);
+    finish("merge %s/1 %s/1 %s/2", 2);
+    fixture_assert_output("is a part, too");
     finish("stability rope_hanging --shard 5/4", 2);
 }
 
