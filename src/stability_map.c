@@ -43,7 +43,7 @@ static const char *const class_names[] = {"ok",      "unsettled", "overstretched
 enum { CLASS, DT, STRAIN_EXCESS, SPEED, PREDICTED, STABLE, UNSTABLE };
 
 // For λ = −1 of one mode. Symplectic Euler with implicit damping: Ω² = 4 + 2·g, with Ω = ω·dt, g = damping·dt.
-// Transverse tension stepped explicitly: sqrt(m·l/T).
+// Tension across springs stepped explicitly: 2/ω of what it alone would swing with.
 double ck_stability_limit(ck_Method method, double frequency, double damping, double transverse) {
     double squared = frequency * frequency;
     switch (method) {
@@ -54,8 +54,10 @@ double ck_stability_limit(ck_Method method, double frequency, double damping, do
     }
 }
 
-// force = K·d, N, of small displacements d about a rest: k·[n·nᵀ + (1 − L/l)·(1 − n·nᵀ)] of each spring.
-static void apply_stiffness(const ck_Model *model, const double *position, const double *d, double *force) {
+// force = K·d, N, of small displacements d about a rest: k·[n·nᵀ + (1 − L/l)·(1 − n·nᵀ)] of each spring, or without the
+// first term what tension does across springs.
+static void apply_stiffness(const ck_Model *model, const double *position, const double *d, bool is_across,
+                            double *force) {
     memset(force, 0, 3 * sizeof *force * (size_t)model->particle_count);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
@@ -63,7 +65,7 @@ static void apply_stiffness(const ck_Model *model, const double *position, const
         ck_subtract(n, position + 3 * spring->b, position + 3 * spring->a);
         ck_subtract(moved, d + 3 * spring->b, d + 3 * spring->a);
         double length = ck_length(n), across = 1 - spring->rest / length;
-        double along = ck_dot(moved, n) / (length * length) * (1 - across);
+        double along = ck_dot(moved, n) / (length * length) * ((is_across ? 0 : 1) - across);
         for (int axis = 0; axis < 3; axis++) {
             double pull = spring->stiffness * (across * moved[axis] + along * n[axis]);
             force[3 * spring->a + axis] -= pull;
@@ -87,17 +89,16 @@ static double damping_of_motion(const ck_Model *model, const double *position, c
     return power / mass;
 }
 
-// The highest frequency by power iteration on M⁻¹·K, a Rayleigh quotient, good to far below 0.1 % after so many rounds;
-// and how fast springs damp that motion.
-static void find_frequency(ck_StabilityRest *rest, const ck_Model *model, double *memory) {
-    const double *position = rest->position;
+// The largest ω² by power iteration on M⁻¹·K, a Rayleigh quotient, good to far below 0.1 % after so many rounds. Its
+// motion is left in memory.
+static double find_largest(const ck_Model *model, const double *position, bool is_across, double *memory) {
     size_t count = 3 * (size_t)model->particle_count;
     double *d = memory, *force = memory + count, quotient = 0;
     ck_Random random = ck_random_seed(1);
     for (size_t i = 0; i < count; i++) d[i] = model->pinned[i / 3] ? 0 : ck_random_unit(&random) - 0.5;
     for (int round = 0; round < 2000; round++) {
         double mass = 0, stiffness = 0, length = 0;
-        apply_stiffness(model, position, d, force);
+        apply_stiffness(model, position, d, is_across, force);
         for (size_t i = 0; i < count; i++) {
             mass += model->mass[i / 3] * d[i] * d[i];
             stiffness += d[i] * force[i];
@@ -105,23 +106,20 @@ static void find_frequency(ck_StabilityRest *rest, const ck_Model *model, double
             length += d[i] * d[i];
         }
         quotient = stiffness / mass;
-        for (size_t i = 0; i < count; i++) d[i] /= sqrt(length);
+        for (size_t i = 0; i < count && length > 0; i++) d[i] /= sqrt(length);
     }
-    rest->frequency = sqrt(quotient);
-    rest->damping = damping_of_motion(model, position, d);
+    return quotient;
 }
 
 static void measure_rest(ck_StabilityRest *rest, const ck_Model *model, double *memory) {
-    find_frequency(rest, model, memory);
-    rest->transverse = INFINITY;
+    double across = find_largest(model, rest->position, true, memory);
+    rest->transverse = across > 0 ? 2 / sqrt(across) : INFINITY;
+    rest->frequency = sqrt(find_largest(model, rest->position, false, memory));
+    rest->damping = damping_of_motion(model, rest->position, memory);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         double length = ck_distance(rest->position + 3 * spring->a, rest->position + 3 * spring->b);
-        double tension = spring->stiffness * (length - spring->rest);
-        double mass = fmin(model->pinned[spring->a] ? INFINITY : model->mass[spring->a],
-                           model->pinned[spring->b] ? INFINITY : model->mass[spring->b]);
         rest->strain = fmax(rest->strain, length / spring->rest - 1);
-        if (tension > 0) rest->transverse = fmin(rest->transverse, sqrt(mass * length / tension));
     }
 }
 

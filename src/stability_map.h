@@ -21,7 +21,7 @@ typedef struct ck_StabilityRest {
     double *position;  // [3*n] m
     double frequency;  // rad/s, the highest of small motion about it
     double damping;    // 1/s, of that motion by the springs' damping
-    double transverse; // s, the least sqrt(m·l/T) of its taut springs; INFINITY without any
+    double transverse; // s, 2/ω of the highest frequency by tension across springs alone; INFINITY without any
     double strain;     // the largest
 } ck_StabilityRest;
 

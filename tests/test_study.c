@@ -149,17 +149,16 @@ static double field_of(const char *row, int index) {
     return atof(row);
 }
 
-// Critical steps at those of theory: 2 % undamped, 5 % damped; ODE's transverse one 20 %.
+// Critical steps at those of theory: 2 % undamped, 5 % damped; ODE's, whose theory leaves damping out, 10 % with it.
 static void test_critical(void **state) {
     (void)state;
     static const struct {
         const char *start;
         double tolerance;
-    } rows[] = {{"rope_hanging,native-verlet,critical,none,", 0.02},
-                {"rope_hanging,native-verlet,critical,scene,", 0.05},
-                {"rope_hanging,bullet-explicit,critical,none,", 0.05},
-                {"rope_hanging,bullet-explicit,critical,scene,", 0.05},
-                {"rope_hanging,ode-quick,critical,scene,", 0.2}};
+    } rows[] = {
+        {"rope_hanging,native-verlet,critical,none,", 0.02},   {"rope_hanging,native-verlet,critical,scene,", 0.05},
+        {"rope_hanging,bullet-explicit,critical,none,", 0.05}, {"rope_hanging,bullet-explicit,critical,scene,", 0.05},
+        {"rope_hanging,ode-quick,critical,none,", 0.02},       {"rope_hanging,ode-quick,critical,scene,", 0.1}};
     char row[1000];
     finish(
         "stability rope_hanging --engine native-verlet --engine bullet-explicit --engine ode-quick --out %s/critical",
