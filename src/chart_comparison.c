@@ -9,10 +9,6 @@
 #define MOST_TIMES 240
 #define MARKS 8 // on each line over time
 
-static bool is_of(const ck_CsvTable *table, int row, const char *scene) {
-    return !strcmp(ck_csv_table_text(table, row, 0), scene);
-}
-
 // null moves nothing, which is of no interest beside what the others do.
 static bool is_shown(const char *engine) {
     return strcmp(engine, "null") != 0;
@@ -87,8 +83,8 @@ int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *o
     for (int row = 0; metrics && row < metrics->row_count; row++) {
         const char *metric = ck_csv_table_text(metrics, row, 2);
         double error = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error"));
-        if (!is_of(metrics, row, scene) || !is_shown(ck_csv_table_text(metrics, row, 1)) || !is_answer(metric) ||
-            !isfinite(error))
+        if (!ck_report_is_of(metrics, row, scene) || !is_shown(ck_csv_table_text(metrics, row, 1)) ||
+            !is_answer(metric) || !isfinite(error))
             continue;
         double uncertainty = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "truth_uncertainty"));
         fprintf(out, "%s,%s,%.9g,%.9g\n", ck_csv_table_text(metrics, row, 1), metric, on_axis(error), uncertainty);
@@ -102,7 +98,7 @@ int ck_chart_select_deviations(const ck_ReportData *data, const char *scene, FIL
     const ck_CsvTable *table = ck_report_table(data, CK_DEVIATIONS);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        if (!is_of(table, row, scene) || strcmp(ck_csv_table_text(table, row, 1), "position_rms")) continue;
+        if (!ck_report_is_of(table, row, scene) || strcmp(ck_csv_table_text(table, row, 1), "position_rms")) continue;
         const char *one = ck_csv_table_text(table, row, 2), *other = ck_csv_table_text(table, row, 3);
         double deviation = ck_csv_table_number(table, row, ck_layout_column(table->layout, "deviation"));
         if (!is_shown(one) || !is_shown(other) || !isfinite(deviation)) continue;
@@ -133,7 +129,7 @@ static int select_series(const ck_ReportData *data, const char *scene, const cha
     for (int row = 0; table && row < table->row_count;) {
         const char *engine = ck_csv_table_text(table, row, 1);
         int end = row;
-        while (end < table->row_count && is_of(table, end, scene) &&
+        while (end < table->row_count && ck_report_is_of(table, end, scene) &&
                !strcmp(ck_csv_table_text(table, end, 3), metric) && !strcmp(ck_csv_table_text(table, end, 1), engine))
             end++;
         if (end > row) rows += write_series(data, table, row, end, out);

@@ -9,10 +9,6 @@
 #define LEAST_EXCESS 1e-4
 #define MOST_EXCESS 1e4
 
-static bool is_of(const ck_CsvTable *table, int row, const char *scene) {
-    return !strcmp(ck_csv_table_text(table, row, 0), scene);
-}
-
 static double number(const ck_CsvTable *table, int row, const char *column) {
     return ck_csv_table_number(table, row, ck_layout_column(table->layout, column));
 }
@@ -37,7 +33,7 @@ static double uncertainty_of(const ck_ReportData *data, const char *scene) {
 // True where no other row of the same engine is both cheaper and nearer to the truth.
 static bool is_on_own_front(const ck_CsvTable *table, int row) {
     for (int other = 0; other < table->row_count; other++)
-        if (is_of(table, other, text(table, row, "scene")) &&
+        if (ck_report_is_of(table, other, text(table, row, "scene")) &&
             !strcmp(text(table, other, "engine"), text(table, row, "engine")) &&
             number(table, other, "cpu_s") < number(table, row, "cpu_s") &&
             number(table, other, "error") <= number(table, row, "error"))
@@ -50,7 +46,7 @@ int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
         double error = number(table, row, "error"), cost = number(table, row, "cpu_s");
-        if (!is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
+        if (!ck_report_is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
         fprintf(out, "%s,%.9g,%.9g,%d,%d,%.9g\n", text(table, row, "engine"), cost, error, is_on_own_front(table, row),
                 number(table, row, "on_front") > 0, uncertainty_of(data, scene));
         rows++;
@@ -60,7 +56,7 @@ int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE
 
 static bool varies_iterations(const ck_CsvTable *table, int row) {
     for (int other = 0; other < table->row_count; other++)
-        if (is_of(table, other, text(table, row, "scene")) &&
+        if (ck_report_is_of(table, other, text(table, row, "scene")) &&
             !strcmp(text(table, other, "engine"), text(table, row, "engine")) &&
             number(table, other, "iterations") != number(table, row, "iterations"))
             return true;
@@ -72,7 +68,7 @@ int ck_chart_select_iterations(const ck_ReportData *data, const char *scene, FIL
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
         double error = number(table, row, "error"), cost = number(table, row, "cpu_s");
-        if (!is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
+        if (!ck_report_is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
         if (!varies_iterations(table, row)) continue;
         fprintf(out, "%s,%g,%.9g,%.9g\n", text(table, row, "engine"), number(table, row, "iterations"), cost, error);
         rows++;
@@ -88,8 +84,8 @@ int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE
         bool is_cell = !strcmp(text(table, row, "case"), "map");
         double step = number(table, row, is_cell ? "time_step_s" : "critical_step_s");
         const char *status = text(table, row, "status");
-        if (!is_of(table, row, scene) || !is_drawn(step) || !is_drawn(number(table, row, "stiffness_factor")) ||
-            strcmp(text(table, row, "damping"), "scene"))
+        if (!ck_report_is_of(table, row, scene) || !is_drawn(step) ||
+            !is_drawn(number(table, row, "stiffness_factor")) || strcmp(text(table, row, "damping"), "scene"))
             continue;
         if (!strcmp(status, "unsupported") || !strcmp(status, "refused")) continue;
         fprintf(out, "%s,%.9g,%.9g,%s,%.9g,%g\n", text(table, row, "engine"), step,
@@ -106,7 +102,7 @@ int ck_chart_select_needs(const ck_ReportData *data, const char *scene, FILE *ou
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
         double excess = fabs(number(table, row, "change")) / number(table, row, "tolerance");
-        if (!is_of(table, row, scene) || isnan(excess)) continue;
+        if (!ck_report_is_of(table, row, scene) || isnan(excess)) continue;
         fprintf(out, "\"%s\",%s,%.9g\n", text(table, row, "left_out"), text(table, row, "metric"),
                 fmax(LEAST_EXCESS, fmin(MOST_EXCESS, excess)));
         rows++;

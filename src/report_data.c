@@ -21,6 +21,10 @@ const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name
     return data->tables[name].layout ? &data->tables[name] : NULL;
 }
 
+bool ck_report_is_of(const ck_CsvTable *table, int row, const char *scene) {
+    return !strcmp(ck_csv_table_text(table, row, 0), scene);
+}
+
 int ck_report_engine(const ck_ReportData *data, const char *engine) {
     int index = 0;
     while (index < data->engine_count && strcmp(data->engines[index], engine)) index++;
@@ -100,7 +104,7 @@ static ck_Status find_names(ck_ReportData *data, ck_Error *error) {
 }
 
 static bool has_error(const ck_CsvTable *metrics, int row, const char *scene, const char *metric) {
-    return !strcmp(ck_csv_table_text(metrics, row, 0), scene) && !strcmp(ck_csv_table_text(metrics, row, 2), metric) &&
+    return ck_report_is_of(metrics, row, scene) && !strcmp(ck_csv_table_text(metrics, row, 2), metric) &&
            !isnan(ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error")));
 }
 

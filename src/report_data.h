@@ -44,6 +44,9 @@ const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name
 // was timed.
 bool ck_summary_counts(const ck_Summary *one);
 
+// True where a row is of a scene, which stands in the first column.
+bool ck_report_is_of(const ck_CsvTable *table, int row, const char *scene);
+
 // Where the engine is in data->engines.
 int ck_report_engine(const ck_ReportData *data, const char *engine);
 
