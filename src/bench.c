@@ -2,7 +2,7 @@
 
 #include "clock.h"
 #include "engine.h"
-#include "lanes.h"
+#include "loops.h"
 #include "scene.h"
 #include "stability.h"
 #include "vector.h"
@@ -18,11 +18,6 @@
 #define REPEAT 0.02
 // Substeps of a frame: what an engine does once a frame is shared out, as in use.
 #define SUBSTEPS 16
-// Additions and multiplications of the row kernels. Explicit: 30 a spring, 45 with the particle's share where there are
-// four springs each; a bar: 36 and a division, which counts as one.
-#define EXPLICIT_PER_SPRING 30
-#define EXPLICIT_PER_PARTICLE 33
-#define BAR_PER_SPRING 37
 // Sweeps that a start may take to the strain that is asked for.
 #define MOST_SWEEPS 4096
 #define STRAIN 0.04
@@ -34,22 +29,31 @@ typedef struct Body {
 
 static const Body bodies[] = {{"cloth", 20, 20}, {"cloth", 64, 64}, {"cloth", 256, 256}, {"rope", 1000, 1}};
 
+// Operations of a row kernel on a regular cloth with shear, as a processor's arithmetic units issue them for a lane:
+// products, sums, both fused, comparisons, choices, and a division.
+typedef struct Work {
+    double spring, particle;
+} Work;
+
 // Engines and set-ups. What projects is given ten iterations; beside: the native engine whose updates are the measure.
 typedef struct Candidate {
     const char *engine, *setup;
     ck_Settings settings;
     int beside;
+    Work work; // 0: not counted
+    bool is_damped;
 } Candidate;
 
 enum { VERLET, BARS, XPBD, VERLET_2, BARS_2, XPBD_2 };
 
 static const Candidate candidates[] = {
-    [VERLET] = {"native-verlet", "", {0}, VERLET},
-    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS},
+    [VERLET] = {"native-verlet", "", {0}, VERLET, .work = {26, 18}},
+    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS, .work = {27, 0}},
     [XPBD] = {"native-xpbd", "10 iterations", {.iterations = 10}, BARS},
     [VERLET_2] = {"native-verlet", "2 threads", {.threads = 2}, VERLET},
     [BARS_2] = {"native-bars", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, BARS},
     [XPBD_2] = {"native-xpbd", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, XPBD},
+    {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {34, 24}, .is_damped = true},
     {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
     {"native-rope", "4 iterations", {.iterations = 4}, BARS},
     {"seed-tecido", "10 iterations", {.iterations = 10}, BARS},
@@ -73,14 +77,14 @@ typedef struct Entrant {
 } Entrant;
 
 // A body of 1 m and 0.2 kg in gravity, let go level: k = 1000 N/m along, 500 across. A substep is half of the explicit
-// bound, so that every engine steps alike.
-static ck_Status build(ck_Model *model, const Body *body, ck_Error *error) {
+// bound without damping, so that every engine steps alike.
+static ck_Status build(ck_Model *model, const Body *body, bool is_damped, ck_Error *error) {
     double down[3] = {0, 0, 1}, gravity[3] = {0, -9.81, 0}, along[3] = {1, 0, 0};
     char *pins[] = {body->columns > 1 ? "top_left" : "first", body->columns > 1 ? "top_right" : "first"};
     uint32_t longest = body->rows > body->columns ? body->rows : body->columns;
     ck_SceneCloth cloth = {.rows = body->rows, .columns = body->columns, .spacing = 1.0 / (longest - 1), .mass = 0.2};
     ck_SceneRope rope = {.particles = body->rows, .spacing = cloth.spacing, .mass = 0.2};
-    ck_SceneSprings springs = {.stiffness = 1000, .shear = 500};
+    ck_SceneSprings springs = {.stiffness = 1000, .shear = 500, .damping = is_damped ? 0.02 : 0};
     cloth.down = down;
     rope.along = along;
     ck_SceneFile file = {.name = (char *)body->name,
@@ -90,6 +94,7 @@ static ck_Status build(ck_Model *model, const Body *body, ck_Error *error) {
                          .pins = pins,
                          .pins_count = 2,
                          .gravity = gravity,
+                         .drag = is_damped ? 2 : 0,
                          .time = {1, 1}};
     ck_Scene scene = {.file = &file};
     ck_Status status = ck_model_build(model, &scene, error);
@@ -183,12 +188,9 @@ static void add_ratio(ck_Csv *csv, const Body *body, const ck_Model *model, cons
 // The share of the processor's peak that the row kernels reach: on cloths, with one thread.
 static void add_share(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant, double peak,
                       const double *quartiles) {
-    bool is_explicit = entrant->candidate == &candidates[VERLET];
-    if (body->columns == 1 || (!is_explicit && entrant->candidate != &candidates[BARS])) return;
-    double work = BAR_PER_SPRING * updates_of(entrant, model);
-    if (is_explicit)
-        work =
-            EXPLICIT_PER_SPRING * (double)model->spring_count + EXPLICIT_PER_PARTICLE * (double)model->particle_count;
+    const Work *each = &entrant->candidate->work;
+    if (body->columns == 1 || each->spring == 0) return;
+    double work = each->spring * updates_of(entrant, model) + each->particle * (double)model->particle_count;
     const double shares[3] = {work / peak / quartiles[0], work / peak / quartiles[2], work / peak / quartiles[1]};
     add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup, "share_of_peak", "1", shares, 1, NULL);
 }
@@ -216,28 +218,30 @@ static void leave(Entrant *entrants, size_t count) {
 
 // All engines on one body, in rounds: a slow spell of the machine hits all alike.
 static ck_Status race(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, double peak, ck_Error *error) {
-    ck_Model model = {0};
+    ck_Model models[2] = {0}; // undamped, damped
     Entrant *entrants = calloc(CANDIDATES, sizeof *entrants);
-    ck_Status status = entrants ? build(&model, body, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Status status = entrants ? build(&models[0], body, false, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = build(&models[1], body, true, error);
     for (size_t i = 0; i < CANDIDATES && !status; i++) {
         if (options->progress) options->progress(body->name, candidates[i].engine);
-        enter(&entrants[i], &candidates[i], &model, options);
+        enter(&entrants[i], &candidates[i], &models[candidates[i].is_damped], options);
     }
     for (int round = 0; round < options->rounds && !status; round++)
         for (size_t i = 0; i < CANDIDATES; i++)
             if (!*entrants[i].reason)
                 entrants[i].times[entrants[i].count++] = time_frames(&entrants[i], entrants[i].frames);
     for (size_t i = 0; i < CANDIDATES && !status; i++)
-        add_entrant(csv, body, &model, &entrants[i], &entrants[candidates[i].beside], peak);
+        add_entrant(csv, body, &models[0], &entrants[i], &entrants[candidates[i].beside], peak);
     leave(entrants, CANDIDATES);
-    ck_model_free(&model);
+    ck_model_free(&models[0]);
+    ck_model_free(&models[1]);
     return status;
 }
 
 // What a simulated second costs where each engine's own rules set its step, on the body as it is let go.
 static ck_Status add_seconds(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, ck_Error *error) {
     ck_Model model = {0};
-    ck_Status status = build(&model, body, error);
+    ck_Status status = build(&model, body, false, error);
     for (int i = 0; i < ck_engine_count() && !status; i++) {
         Candidate automatic = {.engine = ck_engine_at(i)->name, .setup = "automatic"};
         Entrant entrant = {.engine = ck_engine_at(i), .candidate = &automatic};
@@ -311,7 +315,7 @@ static uint32_t find_sweeps(const Candidate *candidate, const ck_Model *model) {
 
 // A cloth of rigid bars that starts 10 % too long, hung by its upper corners, without gravity: the time to 4 % strain.
 static ck_Status build_stretched(ck_Model *model, const Body *body, ck_Error *error) {
-    ck_Status status = build(model, body, error);
+    ck_Status status = build(model, body, false, error);
     for (int i = 0; i < model->spring_count && !status; i++) {
         model->springs[i].rest /= 1.1;
         model->springs[i].stiffness = INFINITY;
@@ -348,25 +352,17 @@ static ck_Status add_residuals(ck_Csv *csv, const Body *body, const ck_BenchOpti
     return status;
 }
 
-#define PEAK_LANES 96
-#define PEAK_ROUNDS 20000
+#define PEAK_ROUNDS 200000
 
-// So many independent chains of one product and one sum each that the processor is never idle.
-CK_KERNEL static double multiply_add(double *lanes) {
-    for (int round = 0; round < PEAK_ROUNDS; round++)
-        for (int i = 0; i < PEAK_LANES; i++) lanes[i] = lanes[i] * 0.999999 + 1e-6;
-    return lanes[0];
-}
-
-// Additions and multiplications a second, at best: what no loop here can beat.
+// Operations a second, at best: what no loop here can beat.
 static double find_peak(void) {
-    double lanes[PEAK_LANES] = {0}, best = 0, sum = 0;
+    double best = 0;
     for (int i = 0; i < 20; i++) {
-        double start = ck_thread_cpu();
-        sum += multiply_add(lanes);
-        best = fmax(best, 2.0 * PEAK_LANES * PEAK_ROUNDS / (ck_thread_cpu() - start));
+        double result, start = ck_thread_cpu();
+        long count = ck_loops_at(0)->peak(PEAK_ROUNDS, &result);
+        best = fmax(best, (double)count / (ck_thread_cpu() - start));
     }
-    return sum >= 0 ? best : NAN;
+    return best;
 }
 
 static double bytes_in_use(void) {
@@ -378,7 +374,7 @@ static double bytes_in_use(void) {
 static ck_Status grow_to(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, double *seconds,
                          ck_Error *error) {
     ck_Model model = {0};
-    ck_Status status = build(&model, body, error);
+    ck_Status status = build(&model, body, false, error);
     if (!status) {
         Entrant entrant;
         double before = bytes_in_use();
@@ -423,7 +419,7 @@ ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *
     double peak = find_peak();
     const double each[3] = {peak, peak, peak};
     ck_Model none = {0};
-    add_row(csv, &(Body){.name = "processor"}, &none, "", "", "multiply_add_peak", "1/s", each, 1, NULL);
+    add_row(csv, &(Body){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
     ck_Status status = CK_OK;
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies && !status; i++)
         status = race(csv, &bodies[i], options, peak, error);

@@ -7,6 +7,7 @@
 #ifndef CK_KERNEL_PROJECTION_H
 #define CK_KERNEL_PROJECTION_H
 
+#include "loops.h"
 #include "rows.h"
 #include "status.h"
 #include "sweep_order.h"
@@ -30,13 +31,14 @@ bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
 // Position, velocity and the velocity a substep earlier, [3*n], are taken over; inverse_mass [n] is 0 where pinned.
 // Memory: 13 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
 // ck_projection_destroy.
-ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Model *model, const ck_RowSprings *springs,
-                               const ck_ProjectionRule *rule, const double *position, const double *velocity,
-                               const double *before, const double *inverse_mass, ck_Error *error);
+ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Loops *loops, const ck_Model *model,
+                               const ck_RowSprings *springs, const ck_ProjectionRule *rule, const double *position,
+                               const double *velocity, const double *before, const double *inverse_mass,
+                               ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 
 // As many substeps, without allocation; up to four sweeps run interleaved, a few rows apart, which changes no result.
-// The same bits whatever vectors the processor has and however many threads share the waves.
+// The same bits however many threads share the waves; on which processors, loops.h says.
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
 
 // [3*n] m, m/s, m/s: before is the velocity of the last substep but one.

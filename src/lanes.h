@@ -1,27 +1,38 @@
-// Eight doubles at a time, in plain C: the compiler makes of them what vectors the processor has.
+// As many doubles at a time as the processor's vectors hold, in C but for a product and a choice. Included by the files
+// that are compiled once for each kind of vectors (see loops.h) and by nothing else.
 #ifndef CK_LANES_H
 #define CK_LANES_H
 
+#include "rows.h"
+
 #include <stdint.h>
-#include <string.h>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 // Passed between functions that are all inlined, so that the calling convention of vectors does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
+// Wider than the processor's, the compiler would take vectors apart through memory, ten times slower than narrow ones.
+#if defined(__AVX512F__)
 #define CK_LANES 8
-#define CK_INLINE static inline __attribute__((always_inline))
-
-// How the innermost loops are compiled: once for each kind of vectors, chosen when the program is loaded.
-// Without fused multiply-add (-ffp-contract=off) every clone rounds alike, so that they give the same bits.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(CK_ONE_CLONE)
-#define CK_KERNEL __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#elif defined(__AVX2__)
+#define CK_LANES 4
 #else
-#define CK_KERNEL
+#define CK_LANES 2
 #endif
 
+// The name of a loop in this compilation: CK_VECTORS says for which vectors it is.
+#define CK_LOOP(name) CK_LOOP_OF(name, CK_VECTORS)
+#define CK_LOOP_OF(name, vectors) CK_LOOP_JOIN(name, vectors)
+#define CK_LOOP_JOIN(name, vectors) name##_##vectors
+
+// Springs that go through each operation of a root together, at most.
+#define CK_MOST_TOGETHER 4
+
 // These may stand at any double and share memory with it.
-typedef double ck_Lanes __attribute__((vector_size(64), aligned(8), may_alias));
-typedef int64_t ck_LaneMask __attribute__((vector_size(64), aligned(8), may_alias)); // all bits of a lane, or none
+typedef double ck_Lanes __attribute__((vector_size(8 * CK_LANES), aligned(8), may_alias));
+typedef int64_t ck_LaneBits __attribute__((vector_size(8 * CK_LANES), aligned(8), may_alias));
 
 typedef struct ck_Lanes3 {
     ck_Lanes x, y, z;
@@ -35,37 +46,117 @@ CK_INLINE void ck_lanes_store(double *to, ck_Lanes value) {
     *(ck_Lanes *)to = value;
 }
 
-// value where the mask is set, else 0, even where value is not a number.
-CK_INLINE ck_Lanes ck_lanes_where(ck_LaneMask mask, ck_Lanes value) {
-    return (ck_Lanes)((ck_LaneMask)value & mask);
+CK_INLINE ck_Lanes ck_lanes_all(double value) {
+    return value - (ck_Lanes){0};
+}
+
+// What C has no words for. c + a·b and c − a·b are rounded once where the processor can: named outright and not left to
+// the compiler (-ffp-contract=off), whose choice depends on what else uses a product. So all that fuse give the same
+// bits. A mask is what a comparison leaves for a choice. Where each lane goes to the next, the first comes from the
+// vector before.
+#if CK_LANES == 8
+typedef __mmask8 ck_LaneMask;
+
+CK_INLINE ck_Lanes ck_lanes_plus(ck_Lanes c, ck_Lanes a, ck_Lanes b) {
+    return (ck_Lanes)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+
+CK_INLINE ck_Lanes ck_lanes_minus(ck_Lanes c, ck_Lanes a, ck_Lanes b) {
+    return (ck_Lanes)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+
+CK_INLINE ck_LaneMask ck_lanes_less(ck_Lanes a, ck_Lanes b) {
+    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ);
 }
 
 CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) {
-    return (ck_Lanes)(((ck_LaneMask)yes & mask) | ((ck_LaneMask)no & ~mask));
+    return (ck_Lanes)_mm512_mask_blend_pd(mask, (__m512d)no, (__m512d)yes);
 }
 
-// Each lane's value goes to the next; the first becomes 0.
-CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes value) {
-    return __builtin_shuffle((ck_Lanes){0}, value, (ck_LaneMask){0, 8, 9, 10, 11, 12, 13, 14});
+CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
+    return __builtin_shuffle(before, value, (ck_LaneBits){7, 8, 9, 10, 11, 12, 13, 14});
+}
+#elif CK_LANES == 4
+typedef __m256d ck_LaneMask;
+
+CK_INLINE ck_Lanes ck_lanes_plus(ck_Lanes c, ck_Lanes a, ck_Lanes b) {
+    return (ck_Lanes)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
 }
 
-// 1/√x to some two units in the last place, in products only: a vector's square root and division take four times as
-// long. The guess is off by at most 3.5 %; each of four Newton steps turns an error e into 1.5·e².
-// Source: Lomont 2003, Fast inverse square root, with the constant for doubles.
+CK_INLINE ck_Lanes ck_lanes_minus(ck_Lanes c, ck_Lanes a, ck_Lanes b) {
+    return (ck_Lanes)_mm256_fnmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+}
+
+CK_INLINE ck_LaneMask ck_lanes_less(ck_Lanes a, ck_Lanes b) {
+    return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_LT_OQ);
+}
+
+CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) {
+    return (ck_Lanes)_mm256_blendv_pd((__m256d)no, (__m256d)yes, mask);
+}
+
+CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
+    return __builtin_shuffle(before, value, (ck_LaneBits){3, 4, 5, 6});
+}
+#else
+typedef ck_LaneBits ck_LaneMask;
+
+CK_INLINE ck_Lanes ck_lanes_plus(ck_Lanes c, ck_Lanes a, ck_Lanes b) {
+#ifdef __FP_FAST_FMA
+    return (ck_Lanes){__builtin_fma(a[0], b[0], c[0]), __builtin_fma(a[1], b[1], c[1])};
+#else
+    return c + a * b;
+#endif
+}
+
+CK_INLINE ck_Lanes ck_lanes_minus(ck_Lanes c, ck_Lanes a, ck_Lanes b) {
+    return ck_lanes_plus(c, -a, b);
+}
+
+CK_INLINE ck_LaneMask ck_lanes_less(ck_Lanes a, ck_Lanes b) {
+    return a < b;
+}
+
+CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) {
+    return (ck_Lanes)(((ck_LaneBits)yes & mask) | ((ck_LaneBits)no & ~mask));
+}
+
+CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
+    return __builtin_shuffle(before, value, (ck_LaneBits){1, 2});
+}
+#endif
+
+// 1/√x, good to an ulp or two, in products and sums only: a vector's square root and division take four times as long.
+// The guess is off by at most 3.5 % (Lomont 2003, Fast inverse square root, with the constant for doubles); the cubic
+// in x·y² that is off least over such guesses leaves 7.5e-7, and a step of third order turns an error e into 2.5·e³. Of
+// 0 it makes a number.
 CK_INLINE void ck_lanes_inverse_root(ck_Lanes *y, const ck_Lanes *x, const int count) {
-    for (int i = 0; i < count; i++) y[i] = (ck_Lanes)(0x5fe6eb50c7b537a9 - ((ck_LaneMask)x[i] >> 1));
-    for (int step = 0; step < 4; step++)
-        for (int i = 0; i < count; i++) y[i] *= 1.5 - 0.5 * x[i] * y[i] * y[i];
+    static const double c[] = {2.1893327466157473, 2.191720621898141, 1.3154411882588606, 0.31305405935214803};
+    ck_Lanes t[CK_MOST_TOGETHER], p[CK_MOST_TOGETHER];
+    for (int i = 0; i < count; i++) y[i] = (ck_Lanes)(0x5fe6eb50c7b537a9 - ((ck_LaneBits)x[i] >> 1));
+    for (int i = 0; i < count; i++) t[i] = x[i] * y[i] * y[i];
+    for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[2]), ck_lanes_all(c[3]), t[i]);
+    for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[1]), p[i], t[i]);
+    for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[0]), p[i], t[i]);
+    for (int i = 0; i < count; i++) y[i] *= p[i];
+    for (int i = 0; i < count; i++) t[i] = ck_lanes_minus(ck_lanes_all(1), x[i] * y[i], y[i]);
+    for (int i = 0; i < count; i++) p[i] = ck_lanes_plus(ck_lanes_all(0.5), ck_lanes_all(0.375), t[i]);
+    for (int i = 0; i < count; i++) y[i] = ck_lanes_plus(y[i], y[i] * t[i], p[i]);
 }
 
-CK_INLINE ck_Lanes3 ck_lanes3_load(double *const from[3], long at) {
-    return (ck_Lanes3){ck_lanes_load(from[0] + at), ck_lanes_load(from[1] + at), ck_lanes_load(from[2] + at)};
+// A vector of a tile: its three coordinates stand a stripe apart.
+CK_INLINE ck_Lanes3 ck_lanes3_load(const double *from) {
+    return (ck_Lanes3){ck_lanes_load(from), ck_lanes_load(from + CK_STRIPE), ck_lanes_load(from + 2 * CK_STRIPE)};
 }
 
-CK_INLINE void ck_lanes3_store(double *const to[3], long at, ck_Lanes3 value) {
-    ck_lanes_store(to[0] + at, value.x);
-    ck_lanes_store(to[1] + at, value.y);
-    ck_lanes_store(to[2] + at, value.z);
+CK_INLINE void ck_lanes3_store(double *to, ck_Lanes3 value) {
+    ck_lanes_store(to, value.x);
+    ck_lanes_store(to + CK_STRIPE, value.y);
+    ck_lanes_store(to + 2 * CK_STRIPE, value.z);
+}
+
+CK_INLINE ck_Lanes3 ck_lanes3_all(const double value[3]) {
+    return (ck_Lanes3){ck_lanes_all(value[0]), ck_lanes_all(value[1]), ck_lanes_all(value[2])};
 }
 
 CK_INLINE ck_Lanes3 ck_lanes3_add(ck_Lanes3 a, ck_Lanes3 b) {
@@ -80,17 +171,28 @@ CK_INLINE ck_Lanes3 ck_lanes3_scale(ck_Lanes scale, ck_Lanes3 a) {
     return (ck_Lanes3){scale * a.x, scale * a.y, scale * a.z};
 }
 
+// a + scale·b
+CK_INLINE ck_Lanes3 ck_lanes3_add_scaled(ck_Lanes3 a, ck_Lanes scale, ck_Lanes3 b) {
+    return (ck_Lanes3){ck_lanes_plus(a.x, scale, b.x), ck_lanes_plus(a.y, scale, b.y), ck_lanes_plus(a.z, scale, b.z)};
+}
+
+// a − scale·b
+CK_INLINE ck_Lanes3 ck_lanes3_subtract_scaled(ck_Lanes3 a, ck_Lanes scale, ck_Lanes3 b) {
+    return (ck_Lanes3){ck_lanes_minus(a.x, scale, b.x), ck_lanes_minus(a.y, scale, b.y),
+                       ck_lanes_minus(a.z, scale, b.z)};
+}
+
 CK_INLINE ck_Lanes ck_lanes3_dot(ck_Lanes3 a, ck_Lanes3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+    return ck_lanes_plus(ck_lanes_plus(a.x * b.x, a.y, b.y), a.z, b.z);
+}
+
+CK_INLINE ck_Lanes3 ck_lanes3_next(ck_Lanes3 before, ck_Lanes3 a) {
+    return (ck_Lanes3){ck_lanes_next(before.x, a.x), ck_lanes_next(before.y, a.y), ck_lanes_next(before.z, a.z)};
 }
 
 CK_INLINE ck_Lanes3 ck_lanes3_choose(ck_LaneMask mask, ck_Lanes3 yes, ck_Lanes3 no) {
     return (ck_Lanes3){ck_lanes_choose(mask, yes.x, no.x), ck_lanes_choose(mask, yes.y, no.y),
                        ck_lanes_choose(mask, yes.z, no.z)};
-}
-
-CK_INLINE ck_Lanes3 ck_lanes3_next(ck_Lanes3 a) {
-    return (ck_Lanes3){ck_lanes_next(a.x), ck_lanes_next(a.y), ck_lanes_next(a.z)};
 }
 
 #endif

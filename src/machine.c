@@ -1,6 +1,7 @@
 #include "machine.h"
 
 #include "engine.h"
+#include "loops.h"
 
 #include <string.h>
 #include <sys/utsname.h>
@@ -39,6 +40,8 @@ void ck_machine_write(ck_Csv *csv) {
     }
     add(csv, "compiler", "gcc " __VERSION__);
     add(csv, "flags", CK_FLAGS);
+    // round otherwise where they do not fuse
+    add(csv, "vectors", ck_loops_at(0)->vectors);
     add(csv, "clothcheck", CK_VERSION);
     for (int i = 0; i < ck_engine_count(); i++) {
         snprintf(text, sizeof text, "engine %s", ck_engine_at(i)->name);

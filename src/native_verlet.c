@@ -119,8 +119,8 @@ static ck_Status start(Verlet *verlet, ck_Error *error) {
     ck_explicit_destroy(verlet->cloth);
     verlet->cloth = NULL;
     if (native->contact || !ck_rows_fit(model, &springs)) return CK_OK;
-    return ck_explicit_create(&verlet->cloth, model, &springs, native->dt, native->position, native->velocity,
-                              native->acceleration, native->inverse_mass, error);
+    return ck_explicit_create(&verlet->cloth, ck_loops_at(0), model, &springs, native->dt, native->position,
+                              native->velocity, native->acceleration, native->inverse_mass, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,

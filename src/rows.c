@@ -42,41 +42,38 @@ bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs) {
 }
 
 ck_Rows ck_rows_of(const ck_Model *model) {
-    int span = (model->columns + CK_LANES - 1) / CK_LANES, rows = model->particle_count / model->columns;
+    int span = (model->columns + CK_STRIPE - 1) / CK_STRIPE, rows = model->particle_count / model->columns;
     if (span < 2) span = 2; // what is shifted by one from the last vector to the first stays inside the row
-    long stride = (long)span * CK_LANES;
+    long stride = (long)span * CK_STRIPE;
     // arrays a multiple of 4 KiB apart would fall on the same lines of the first cache
-    return (ck_Rows){rows, model->columns, span, stride, (size_t)(rows * stride) + 3 * CK_LANES};
+    return (ck_Rows){rows, model->columns, span, stride, (size_t)(rows * stride) + 3 * CK_STRIPE};
 }
 
 double *ck_rows_allocate(const ck_Rows *rows, int count) {
     size_t bytes = sizeof(double) * rows->size * (size_t)count;
-    double *block = aligned_alloc(sizeof(double) * CK_LANES, bytes);
+    double *block = aligned_alloc(sizeof(double) * CK_STRIPE, bytes);
     if (block) memset(block, 0, bytes);
     return block;
 }
 
-void ck_rows_load(const ck_Rows *rows, double *const out[3], const double *vectors) {
-    for (int row = 0; row < rows->rows; row++, vectors += 3 * rows->columns)
-        for (int lane = 0; lane * rows->span < rows->columns; lane++) {
-            const double *from = vectors + 3 * lane * rows->span;
-            long at = row * rows->stride + lane;
-            for (int i = 0; i < rows->span && lane * rows->span + i < rows->columns; i++, at += CK_LANES)
-                for (int axis = 0; axis < 3; axis++) out[axis][at] = from[3 * i + axis];
-        }
+void ck_rows_load(const ck_Rows *rows, double *tiles, const double *vectors) {
+    for (int i = 0; i < rows->rows * rows->columns; i++)
+        for (int axis = 0; axis < 3; axis++)
+            tiles[ck_rows_at(rows, i / rows->columns, i % rows->columns).tile + axis * CK_STRIPE] =
+                vectors[3 * i + axis];
 }
 
-void ck_rows_store(const ck_Rows *rows, double *vectors, double *const from[3]) {
+void ck_rows_store(const ck_Rows *rows, double *vectors, const double *tiles) {
     for (int row = 0; row < rows->rows; row++, vectors += 3 * rows->columns)
         for (int lane = 0; lane * rows->span < rows->columns; lane++) {
             double *to = vectors + 3 * lane * rows->span;
-            long at = row * rows->stride + lane;
-            for (int i = 0; i < rows->span && lane * rows->span + i < rows->columns; i++, at += CK_LANES)
-                for (int axis = 0; axis < 3; axis++) to[3 * i + axis] = from[axis][at];
+            const double *from = tiles + ck_rows_place(rows, row, 0).tile + lane;
+            for (int i = 0; i < rows->span && lane * rows->span + i < rows->columns; i++, from += 3 * CK_STRIPE)
+                for (int axis = 0; axis < 3; axis++) to[3 * i + axis] = from[axis * CK_STRIPE];
         }
 }
 
 void ck_rows_mark_paired(const ck_Rows *rows, int reach, double *paired) {
-    for (int column = 0; column < rows->span * CK_LANES; column++)
-        paired[ck_rows_at(rows, 0, column)] = column + reach < rows->columns;
+    for (int column = 0; column < rows->span * CK_STRIPE; column++)
+        paired[ck_rows_at(rows, 0, column).single] = column + reach < rows->columns;
 }

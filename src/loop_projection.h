@@ -1,0 +1,55 @@
+// What the sweeps over rows of kernel_projection work on.
+#ifndef CK_LOOP_PROJECTION_H
+#define CK_LOOP_PROJECTION_H
+
+#include "kernel_projection.h"
+#include "loops.h"
+
+// Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it.
+#define CK_SWEEP_LAG 3
+
+// One colour of a row's springs: no two of a colour share a particle. DOWN_LATE is the DOWN of the row above.
+typedef enum ck_Colour {
+    CK_ALONG_EVEN,
+    CK_ALONG_ODD,
+    CK_ALONG_LAST,
+    CK_DOWN,
+    CK_DOWN_RIGHT,
+    CK_DOWN_LEFT,
+    CK_DOWN_LATE,
+    CK_COLOUR_COUNT
+} ck_Colour;
+
+// What a correction needs of a kind of springs.
+typedef struct ck_Compliant {
+    double compliance, gamma;   // α̃ and γ̃
+    double one_free, both_free; // relaxation·w/((1 + γ̃)·W + α̃) with one end free, or both
+} ck_Compliant;
+
+struct ck_ProjectedCloth {
+    const ck_Loops *loops;
+    ck_Rows rows;
+    ck_ProjectionRule rule;
+    double carry_way, push_way[3];                                      // of the rule, times dt
+    double quarter_rest[CK_SPRING_KINDS], least_along[CK_SPRING_KINDS]; // m²: relaxation·L²/4, L²/2
+    double mass, rest[CK_SPRING_KINDS];                                 // kg, m
+    ck_Compliant compliant[CK_SPRING_KINDS];
+    int terms;
+    long sweeps;                    // of this call
+    double *x, *start, *v, *before; // tiles
+    double *is_free, *paired, *all;
+    double *multiplier[CK_COLOUR_COUNT]; // NULL: one sweep starts from 0 and needs none
+    bool *is_held;                       // [rows + 1] a pin in the row or the one below
+    double *state, *pairs, *multipliers;
+};
+
+// What a cloth does not have is not in its loop.
+enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4 };
+
+// The sweeps of a block, and the row at which each is in a wave.
+typedef struct ck_Wave {
+    long first_sweep;
+    int sweeps, wave;
+} ck_Wave;
+
+#endif
