@@ -37,8 +37,8 @@ static const struct {
     [OUT] = {"out", 0, "--out DIR            write the CSVs into DIR"},
     [ENGINE] = {"engine", 0, "--engine NAME        run this engine only; may be given several times"},
     [SET] = {"set", 0,
-             "--set ENGINE.KEY=N   substeps, iterations, relaxation, compliance, klst, mended, reordered or threads of "
-             "an\n                       engine, over the scene's own"},
+             "--set ENGINE.KEY=N   substeps, iterations, relaxation, compliance, klst, mended, reordered, threads or "
+             "vectors\n                       of an engine, over the scene's own"},
     [REPEATS] = {"repeats", CK_TAKES_TIMING, "--repeats N          timed repeats, 0 to 99 (usually 5)"},
     [BUDGET] = {"budget", CK_TAKES_TIMING, "--budget S           CPU seconds per timed repeat at most (usually 2)"},
     [TIME_LIMIT] = {"time-limit", 0, "--time-limit S       wall seconds that one run may take (usually 900)"},

@@ -53,6 +53,12 @@ static const Candidate candidates[] = {
     [VERLET_2] = {"native-verlet", "2 threads", {.threads = 2}, VERLET},
     [BARS_2] = {"native-bars", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, BARS},
     [XPBD_2] = {"native-xpbd", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, XPBD},
+    {"native-verlet", "vectors of 4", {.vectors = 4}, VERLET},
+    {"native-bars", "10 iterations, vectors of 4", {.iterations = 10, .vectors = 4}, BARS},
+    {"native-xpbd", "10 iterations, vectors of 4", {.iterations = 10, .vectors = 4}, XPBD},
+    {"native-verlet", "vectors of 2", {.vectors = 2}, VERLET},
+    {"native-bars", "10 iterations, vectors of 2", {.iterations = 10, .vectors = 2}, BARS},
+    {"native-xpbd", "10 iterations, vectors of 2", {.iterations = 10, .vectors = 2}, XPBD},
     {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {34, 24}, .is_damped = true},
     {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
     {"native-rope", "4 iterations", {.iterations = 4}, BARS},
@@ -325,13 +331,18 @@ static ck_Status build_stretched(ck_Model *model, const Body *body, ck_Error *er
     return status;
 }
 
+// What projects, by one thread and with the vectors that there are: the rest take as many sweeps.
+static bool has_residual(const Candidate *candidate) {
+    return candidate->settings.iterations && !candidate->settings.threads && !candidate->settings.vectors;
+}
+
 static ck_Status add_residuals(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, ck_Error *error) {
     ck_Model model = {0};
     uint32_t sweeps[CANDIDATES] = {0};
     double times[CANDIDATES][MAX_ROUNDS], quartiles[3];
     ck_Status status = build_stretched(&model, body, error);
     for (size_t i = 0; i < CANDIDATES && !status; i++) {
-        if (!candidates[i].settings.iterations || candidates[i].settings.threads > 1) continue;
+        if (!has_residual(&candidates[i])) continue;
         if (options->progress) options->progress(body->name, candidates[i].engine);
         sweeps[i] = find_sweeps(&candidates[i], &model);
     }
@@ -339,7 +350,7 @@ static ck_Status add_residuals(ck_Csv *csv, const Body *body, const ck_BenchOpti
         for (size_t i = 0; i < CANDIDATES; i++)
             if (sweeps[i]) sweep_start(&candidates[i], &model, sweeps[i], &times[i][round]);
     for (size_t i = 0; i < CANDIDATES && !status; i++) {
-        if (!candidates[i].settings.iterations || candidates[i].settings.threads > 1) continue;
+        if (!has_residual(&candidates[i])) continue;
         const double count = sweeps[i], each[3] = {count, count, count};
         const char *reason = count > 0 ? NULL : "does not model rigid bars, or does not get there in 4096 sweeps";
         find_quartiles(times[i], sweeps[i] ? options->rounds : 0, quartiles);

@@ -6,7 +6,7 @@
 #include "rows.h"
 
 #include <stdint.h>
-#ifdef __AVX2__
+#ifdef __FMA__
 #include <immintrin.h>
 #endif
 
@@ -16,7 +16,7 @@
 // Wider than the processor's, the compiler would take vectors apart through memory, ten times slower than narrow ones.
 #if defined(__AVX512F__)
 #define CK_LANES 8
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && defined(__FMA__)
 #define CK_LANES 4
 #else
 #define CK_LANES 2

@@ -6,6 +6,7 @@
 #define CK_LOOPS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct ck_ExplicitCloth;
 struct ck_ProjectedCloth;
@@ -20,6 +21,7 @@ typedef long ck_Peak(long rounds, double *result);
 
 typedef struct ck_Loops {
     const char *vectors; // what compilers call the processors that have them
+    int lanes;           // doubles of one
     bool fuses;
     ck_ExplicitRow *explicit_row;
     ck_ProjectionWave *projection_wave;
@@ -28,5 +30,8 @@ typedef struct ck_Loops {
 
 // Those that this processor can run, the widest first; from their number on NULL.
 const ck_Loops *ck_loops_at(int index);
+
+// The widest of at most so many doubles; 0: of any. Those of two are there always.
+const ck_Loops *ck_loops_for(uint32_t lanes);
 
 #endif

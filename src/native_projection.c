@@ -5,8 +5,9 @@ ck_Status ck_native_project_rows(ck_Native *native, const ck_ProjectionRule *rul
     ck_projection_destroy(native->cloth);
     native->cloth = NULL;
     if (!ck_projection_fits(native->model, &springs)) return CK_OK;
-    return ck_projection_create(&native->cloth, ck_loops_at(0), native->model, &springs, rule, native->position,
-                                native->velocity, native->other_velocity, native->inverse_mass, error);
+    return ck_projection_create(&native->cloth, ck_loops_for(native->used.vectors), native->model, &springs, rule,
+                                native->position, native->velocity, native->other_velocity, native->inverse_mass,
+                                error);
 }
 
 ck_Status ck_native_hand_out(void **state, ck_Native *native, ck_Status status) {

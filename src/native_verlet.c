@@ -87,7 +87,8 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     double limit = ck_stability_drag_time(model, 0.25);
     if (frequency > 0) limit = fmin(limit, 0.5 * ck_stability_verlet_limit(frequency, damping));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit),
-                          .threads = wanted->threads};
+                          .threads = wanted->threads,
+                          .vectors = wanted->vectors};
     ck_native_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);
     ck_native_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
     if (model->terms & CK_TERM_DAMPING)
@@ -119,8 +120,8 @@ static ck_Status start(Verlet *verlet, ck_Error *error) {
     ck_explicit_destroy(verlet->cloth);
     verlet->cloth = NULL;
     if (native->contact || !ck_rows_fit(model, &springs)) return CK_OK;
-    return ck_explicit_create(&verlet->cloth, ck_loops_at(0), model, &springs, native->dt, native->position,
-                              native->velocity, native->acceleration, native->inverse_mass, error);
+    return ck_explicit_create(&verlet->cloth, ck_loops_for(native->used.vectors), model, &springs, native->dt,
+                              native->position, native->velocity, native->acceleration, native->inverse_mass, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,

@@ -87,7 +87,8 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                                                        : 1,
                           .relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1,
                           .compliance = wanted->compliance,
-                          .threads = wanted->threads};
+                          .threads = wanted->threads,
+                          .vectors = wanted->vectors};
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
     double dt = model->step / used->substeps;
     ck_native_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);

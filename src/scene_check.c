@@ -58,7 +58,7 @@ static ck_Status check_range(const Check *check, yaml_node_t *node, double value
     if (range == CK_RANGE_POSITIVE && !(value > 0)) wanted = "a number above 0";
     if (range == CK_RANGE_NOT_NEGATIVE && !(value >= 0)) wanted = "0 or a number above it";
     if (range == CK_RANGE_UNIT && !(value >= 0 && value <= 1)) wanted = "a number from 0 to 1";
-    if (range == CK_RANGE_THREADS && !(value >= 0 && value <= 64)) wanted = "a number from 0 to 64";
+    if (range == CK_RANGE_UP_TO_64 && !(value >= 0 && value <= 64)) wanted = "a number from 0 to 64";
     if (range == CK_RANGE_SETTING && !(value >= 0 && value <= 1e6)) wanted = "a number from 0 to 1000000";
     if (!wanted) return CK_OK;
     return ck_document_fail(check->document, node, check->error, "%s is %s; it must be %s", path, scalar_text(node),

@@ -40,7 +40,8 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"*.compliance", CK_RANGE_SETTING},
     {"*.klst", CK_RANGE_UNIT},
     {"*.reordered", CK_RANGE_UNIT},
-    {"*.threads", CK_RANGE_THREADS},
+    {"*.threads", CK_RANGE_UP_TO_64},
+    {"*.vectors", CK_RANGE_UP_TO_64},
     {NULL, CK_RANGE_FINITE},
 };
 
@@ -148,6 +149,7 @@ static const cyaml_schema_field_t engine_fields[] = {
     CYAML_FIELD_UINT("mended", OPTIONAL, ck_Settings, mended),
     CYAML_FIELD_UINT("reordered", OPTIONAL, ck_Settings, reordered),
     CYAML_FIELD_UINT("threads", OPTIONAL, ck_Settings, threads),
+    CYAML_FIELD_UINT("vectors", OPTIONAL, ck_Settings, vectors),
     CYAML_FIELD_END,
 };
 

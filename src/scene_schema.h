@@ -11,7 +11,7 @@ typedef enum ck_Range {
     CK_RANGE_NOT_NEGATIVE,
     CK_RANGE_UNIT,    // 0 … 1
     CK_RANGE_SETTING, // 0 … 1000000
-    CK_RANGE_THREADS, // 0 … 64
+    CK_RANGE_UP_TO_64,
 } ck_Range;
 
 typedef struct ck_RangeRule {

@@ -11,6 +11,7 @@ const ck_SettingKey ck_setting_keys[CK_SETTING_COUNT] = {
     [CK_SET_MENDED] = {"mended", true, 1e6},
     [CK_SET_REORDERED] = {"reordered", true, 1},
     [CK_SET_THREADS] = {"threads", true, 64},
+    [CK_SET_VECTORS] = {"vectors", true, 64},
 };
 
 double ck_setting_get(const ck_Settings *settings, ck_Setting setting) {
@@ -22,7 +23,8 @@ double ck_setting_get(const ck_Settings *settings, ck_Setting setting) {
     case CK_SET_KLST: return settings->klst;
     case CK_SET_MENDED: return settings->mended;
     case CK_SET_REORDERED: return settings->reordered;
-    default: return settings->threads;
+    case CK_SET_THREADS: return settings->threads;
+    default: return settings->vectors;
     }
 }
 
@@ -35,7 +37,8 @@ void ck_setting_set(ck_Settings *settings, ck_Setting setting, double value) {
     case CK_SET_KLST: settings->klst = value; break;
     case CK_SET_MENDED: settings->mended = (uint32_t)value; break;
     case CK_SET_REORDERED: settings->reordered = (uint32_t)value; break;
-    default: settings->threads = (uint32_t)value; break;
+    case CK_SET_THREADS: settings->threads = (uint32_t)value; break;
+    default: settings->vectors = (uint32_t)value; break;
     }
 }
 

@@ -236,6 +236,18 @@ static void test_threads(void **state) {
     ck_comparison_free(&comparison);
 }
 
+// The widest that are there and no wider than asked for; two doubles always are.
+static void test_vectors(void **state) {
+    (void)state;
+    assert_ptr_equal(ck_loops_for(0), ck_loops_at(0));
+    for (uint32_t lanes = 1; lanes < 20; lanes++) {
+        const ck_Loops *loops = ck_loops_for(lanes);
+        assert_true(loops->lanes <= (int)lanes || loops->lanes == 2);
+        for (int kind = 0; ck_loops_at(kind); kind++)
+            assert_true(ck_loops_at(kind)->lanes <= loops->lanes || ck_loops_at(kind)->lanes > (int)lanes);
+    }
+}
+
 // A third-order step leaves 1e-18; what is left is rounding, of two products and a sum.
 static void test_root(void **state) {
     (void)state;
@@ -276,7 +288,7 @@ static void test_fit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_projection),
-                                       cmocka_unit_test(test_threads), cmocka_unit_test(test_root),
-                                       cmocka_unit_test(test_fit)};
+                                       cmocka_unit_test(test_threads),  cmocka_unit_test(test_vectors),
+                                       cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
