@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 // Sweeps that run interleaved: enough independent work for a processor that waits for each sweep's last result.
 #define DEPTH 4
@@ -144,7 +143,7 @@ static long when_visited(const ck_Rows *rows, ck_Projection projection, const ck
     if (spring->kind == CK_SHEAR) colour = right > 0 ? CK_DOWN_RIGHT : CK_DOWN_LEFT;
     if (spring->b / rows->columns == row) colour = vector + 1 == rows->span ? CK_ALONG_LAST : vector % 2;
     // the colours' numbers have the order of either sweep
-    return ((row + (colour == CK_DOWN_LATE)) * (CK_COLOUR_COUNT) + colour) * rows->stride +
+    return ((row + (colour == CK_DOWN_LATE)) * CK_COLOUR_COUNT + colour) * rows->stride +
            ck_rows_at(rows, 0, column).single;
 }
 

@@ -1,9 +1,9 @@
 // Position constraints on a regular cloth, Gauss–Seidel over rows: rigid bars and compliant springs (XPBD).
 //
 // A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
-// corrected vector by vector: those along it from even columns of a run, then from odd ones; then of bars those to the
-// next row, straight down, down right and down left, of springs those down right and down left, and straight down from
-// the row above. That is the order of ck_sweep_order.
+// corrected vector by vector of eight, however wide the processor's are: those along it from even columns of a run,
+// then from odd ones; then of bars those to the next row, straight down, down right and down left, of springs those
+// down right and down left, and straight down from the row above. That is the order of ck_sweep_order.
 #ifndef CK_KERNEL_PROJECTION_H
 #define CK_KERNEL_PROJECTION_H
 

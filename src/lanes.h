@@ -1,5 +1,5 @@
 // As many doubles at a time as the processor's vectors hold, in C but for a product and a choice. Included by the files
-// that are compiled once for each kind of vectors (see loops.h) and by nothing else.
+// that are compiled once for each kind of vectors (see loops.h), and by their test.
 #ifndef CK_LANES_H
 #define CK_LANES_H
 
@@ -14,7 +14,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 // Wider than the processor's, the compiler would take vectors apart through memory, ten times slower than narrow ones.
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__FMA__)
 #define CK_LANES 8
 #elif defined(__AVX2__) && defined(__FMA__)
 #define CK_LANES 4

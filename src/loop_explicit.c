@@ -7,6 +7,7 @@ enum { DAMPED = CK_ROW_DAMPED, DRAGGED = CK_ROW_DRAGGED, SHEARED = CK_ROW_SHEARE
 // The springs of one vector of a row to the vector on its right and to the row below; DOWN_LEFT leads from the vector
 // on the right to the one below this.
 enum { RIGHT, DOWN, DOWN_RIGHT, DOWN_LEFT, SPRINGS };
+_Static_assert(SPRINGS <= CK_MOST_TOGETHER, "a vector's springs go through the root together");
 
 typedef struct Ends {
     long a, b; // tiles
@@ -128,17 +129,17 @@ CK_INLINE void end_vector(const struct ck_ExplicitCloth *cloth, const Pulls *pul
 // The last vector's springs come first: what they pull to the right is on the first vector, one lane on.
 CK_INLINE void pass(const struct ck_ExplicitCloth *cloth, int row, bool advances, const int terms) {
     const int last = cloth->rows.span - 1;
-    Pulls ends[CK_STRIPE / CK_LANES];
+    Pulls lasts[CK_STRIPE / CK_LANES];
     // from the last lanes on, so that a vector that is its own right has the sums of its springs in one order
     for (int i = 0; i <= last && (terms & BENT); i++)
         for (int lane = CK_STRIPE - CK_LANES; lane >= 0; lane -= CK_LANES) bend_vector(cloth, row, i, lane, terms);
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
-        ends[lane / CK_LANES] = (Pulls){none, none, none, none};
-        pull_vector(cloth, &ends[lane / CK_LANES], row, last, lane, terms);
+        lasts[lane / CK_LANES] = (Pulls){none, none, none, none};
+        pull_vector(cloth, &lasts[lane / CK_LANES], row, last, lane, terms);
     }
     const Pulls *before = NULL;
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
-        Pulls *end = &ends[lane / CK_LANES];
+        Pulls *end = &lasts[lane / CK_LANES];
         Pulls pulls = {.right = ck_lanes3_next(before ? before->right : none, end->right),
                        .below_right = ck_lanes3_next(before ? before->below_right : none, end->below_right)};
         for (int i = 0; i < last; i++) {

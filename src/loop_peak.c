@@ -10,6 +10,7 @@ long CK_LOOP(ck_peak)(long rounds, double *result) {
     ck_Lanes chains[CHAINS];
     for (int i = 0; i < CHAINS; i++) chains[i] = ck_lanes_all(i);
     for (long round = 0; round < rounds; round++)
+#pragma GCC unroll 12
         for (int i = 0; i < CHAINS; i++)
             chains[i] = ck_lanes_plus(ck_lanes_all(1e-6), chains[i], ck_lanes_all(0.999999));
     *result = 0;

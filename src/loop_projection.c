@@ -6,10 +6,10 @@
 
 // Vectors of a row beyond which it alone has work enough, and several would not stay in the first cache.
 #define WIDE 10
-// What stands for no length at all, m²: 1/TINY is a number.
-#define TINY 1e-300
+// What stands for no length at all, m²: the square of any rest length over it is a number.
+#define TINY 1e-200
 
-enum { DAMPED = CK_SWEEP_DAMPED, REPEATED = CK_SWEEP_REPEATED, BARS = CK_SWEEP_BARS, HELD = 8 };
+enum { DAMPED = CK_SWEEP_DAMPED, REPEATED = CK_SWEEP_REPEATED, BARS = CK_SWEEP_BARS, HELD = CK_SWEEP_HELD };
 
 // A vector of springs.
 typedef struct Ends {

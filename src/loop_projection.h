@@ -39,12 +39,12 @@ struct ck_ProjectedCloth {
     double *x, *start, *v, *before; // tiles
     double *is_free, *paired, *all;
     double *multiplier[CK_COLOUR_COUNT]; // NULL: one sweep starts from 0 and needs none
-    bool *is_held;                       // [rows + 1] a pin in the row or the one below
+    bool *is_held;                       // [rows] a pin in the row or the one below
     double *state, *pairs, *multipliers;
 };
 
-// What a cloth does not have is not in its loop.
-enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4 };
+// What a cloth does not have is not in its loop; HELD is a row's.
+enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4, CK_SWEEP_HELD = 8 };
 
 // The sweeps of a block, and the row at which each is in a wave.
 typedef struct ck_Wave {

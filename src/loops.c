@@ -14,7 +14,7 @@ ck_Peak ck_peak_plain, ck_peak_v3, ck_peak_v4;
 
 // Each processor that has one kind has those below it.
 static const ck_Loops all[] = {
-#ifdef __x86_64__
+#ifdef CK_HAS_X86_VECTORS
     {"x86-64-v4", 8, true, ck_explicit_row_v4, ck_projection_wave_v4, ck_peak_v4},
     {"x86-64-v3", 4, true, ck_explicit_row_v3, ck_projection_wave_v3, ck_peak_v3},
 #endif
@@ -22,7 +22,7 @@ static const ck_Loops all[] = {
 };
 
 const ck_Loops *ck_loops_at(int index) {
-#ifdef __x86_64__
+#ifdef CK_HAS_X86_VECTORS
     if (!__builtin_cpu_supports("x86-64-v4")) index++;
     if (!__builtin_cpu_supports("x86-64-v3")) index++;
 #endif

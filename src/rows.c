@@ -1,6 +1,5 @@
 #include "rows.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,7 +42,7 @@ bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs) {
 
 ck_Rows ck_rows_of(const ck_Model *model) {
     int span = (model->columns + CK_STRIPE - 1) / CK_STRIPE, rows = model->particle_count / model->columns;
-    if (span < 2) span = 2; // what is shifted by one from the last vector to the first stays inside the row
+    if (span < 2) span = 2; // so that the right of a vector is another
     long stride = (long)span * CK_STRIPE;
     // arrays a multiple of 4 KiB apart would fall on the same lines of the first cache
     return (ck_Rows){rows, model->columns, span, stride, (size_t)(rows * stride) + 3 * CK_STRIPE};

@@ -33,7 +33,8 @@ typedef struct ck_Rows {
 ck_Rows ck_rows_of(const ck_Model *model);
 
 // Where a vector stands in arrays of one number a particle, and of three, tiles. Shifted by one, its last lane is what
-// stands behind it: nothing that is paired.
+// stands behind it: nothing that is paired, so that what is stored there is what was read. With a reach of two and rows
+// of two vectors that is the next row's first, or after the last row the array's end, which is there for this, too.
 typedef struct ck_Place {
     long single, tile;
 } ck_Place;

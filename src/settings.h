@@ -18,7 +18,7 @@ typedef struct ck_Settings {
     uint32_t mended;     // quirks of an origin to leave out, bits as `clothcheck list` counts them
     uint32_t reordered;  // 1: links in an order in which neighbours do not wait for each other; bullet-pbd
     uint32_t threads;    // that share a step, where the engine can; 0 and 1: none but the caller's
-    uint32_t vectors;    // doubles of an instruction at most, in the loops over regular cloths
+    uint32_t vectors;    // doubles of an instruction at most, but two always, in the loops over regular cloths
 } ck_Settings;
 
 // A setting by its name, as in scene files and --set.

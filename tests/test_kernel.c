@@ -83,7 +83,8 @@ static void compare_explicit(const char *size, const char *springs, const char *
 // Every set of terms, on rows shorter and longer than a vector and a cloth of few rows.
 static void test_explicit(void **state) {
     (void)state;
-    static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 9, columns: 19"};
+    static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 6, columns: 16",
+                                        "rows: 9, columns: 19"};
     static const char *const springs[] = {
         "stiffness: 100", "stiffness: 100, shear: 50", "stiffness: 100, shear: 50, damping: 0.05",
         "stiffness: 100, shear: 50, bend: 20", "stiffness: 100, bend: 20, damping: 0.05"};
@@ -190,8 +191,8 @@ static void compare_projection(const char *size, const char *springs, ck_Project
 // One sweep and several, one substep's in a block of interleaved sweeps or its sweeps in several blocks.
 static void test_projection(void **state) {
     (void)state;
-    static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 9, columns: 19",
-                                        "rows: 12, columns: 33"};
+    static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 6, columns: 16",
+                                        "rows: 9, columns: 19", "rows: 12, columns: 33"};
     static const char *const springs[] = {"stiffness: 100", "stiffness: 100, shear: 50",
                                           "stiffness: 100, shear: 50, damping: 0.05"};
     for (size_t size = 0; size < sizeof sizes / sizeof *sizes; size++)
@@ -224,16 +225,22 @@ static void compare_threads(const ck_Model *model, const ck_Engine *engine, uint
 static void test_threads(void **state) {
     (void)state;
     static const char *const engines[] = {"native-verlet", "native-bars", "native-xpbd"};
-    ck_Comparison comparison;
-    fixture_load(
-        &comparison,
-        "name: threads\ncloth: {rows: 60, columns: 21, spacing: 0.05, mass: 1, down: [0, 0, 1]}\nsprings: "
-        "{stiffness: 100, shear: 50, damping: 0.01}\npins: [top_left, top_right]\ndrag: 1\ngravity: [0, -9.81, "
-        "0]\ntime: {duration: 1, step: 0.01}\n");
-    for (size_t i = 0; i < 3; i++)
-        for (uint32_t threads = 2; threads < 5; threads++)
-            compare_threads(&comparison.model, ck_engine_find(engines[i]), threads);
-    ck_comparison_free(&comparison);
+    static const char *const springs[] = {"shear: 50", "shear: 50, bend: 20"};
+    for (int columns = 16; columns < 22; columns += 5)
+        for (size_t i = 0; i < 2; i++) {
+            char text[400];
+            snprintf(text, sizeof text,
+                     "name: threads\ncloth: {rows: 60, columns: %d, spacing: 0.05, mass: 1, down: [0, 0, 1]}\nsprings: "
+                     "{stiffness: 100, %s, damping: 0.01}\npins: [top_left, top_right]\ndrag: 1\ngravity: [0, -9.81, "
+                     "0]\ntime: {duration: 1, step: 0.01}\n",
+                     columns, springs[i]);
+            ck_Comparison comparison;
+            fixture_load(&comparison, text);
+            for (size_t engine = 0; engine < 3; engine++)
+                for (uint32_t threads = 2; threads < 5; threads++)
+                    compare_threads(&comparison.model, ck_engine_find(engines[engine]), threads);
+            ck_comparison_free(&comparison);
+        }
 }
 
 // The widest that are there and no wider than asked for; two doubles always are.
