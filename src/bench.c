@@ -49,7 +49,7 @@ enum { VERLET, BARS, XPBD, VERLET_2, BARS_2, XPBD_2 };
 
 static const Candidate candidates[] = {
     [VERLET] = {"native-verlet", "", {0}, VERLET, .work = {26, 18}},
-    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS, .work = {27, 1.2}},
+    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS, .work = {27, 12}},
     [XPBD] = {"native-xpbd", "10 iterations", {.iterations = 10}, BARS},
     [VERLET_2] = {"native-verlet", "2 threads", {.threads = 2}, VERLET},
     [BARS_2] = {"native-bars", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, BARS},
