@@ -48,8 +48,8 @@ typedef struct Candidate {
 enum { VERLET, BARS, XPBD, VERLET_2, BARS_2, XPBD_2 };
 
 static const Candidate candidates[] = {
-    [VERLET] = {"native-verlet", "", {0}, VERLET, .work = {26, 18}},
-    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS, .work = {27, 12}},
+    [VERLET] = {"native-verlet", "", {0}, VERLET, .work = {25, 12}},
+    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS, .work = {23, 12}},
     [XPBD] = {"native-xpbd", "10 iterations", {.iterations = 10}, BARS},
     [VERLET_2] = {"native-verlet", "2 threads", {.threads = 2}, VERLET},
     [BARS_2] = {"native-bars", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, BARS},
@@ -60,7 +60,7 @@ static const Candidate candidates[] = {
     {"native-verlet", "vectors of 2", {.vectors = 2}, VERLET},
     {"native-bars", "10 iterations, vectors of 2", {.iterations = 10, .vectors = 2}, BARS},
     {"native-xpbd", "10 iterations, vectors of 2", {.iterations = 10, .vectors = 2}, XPBD},
-    {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {34, 24}, .is_damped = true},
+    {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {33, 19}, .is_damped = true},
     {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
     {"native-rope", "4 iterations", {.iterations = 4}, BARS},
     {"seed-tecido", "10 iterations", {.iterations = 10}, BARS},

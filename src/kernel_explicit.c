@@ -5,17 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The first row has no springs from above; nor has the second, of those that bend.
-static void run_wave(void *state, long substep, int row) {
-    ck_ExplicitCloth *cloth = state;
-    if (row == 0) memset(cloth->a, 0, 3 * sizeof(double) * (size_t)cloth->rows.stride);
-    cloth->loops->explicit_row(cloth, row, substep + 1 < cloth->substeps);
-}
-
 // x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  v ← v + a·dt/2: the start of a call's first substep.
-static void advance(ck_ExplicitCloth *cloth) {
+static void advance_row(ck_ExplicitCloth *cloth, int row) {
     const double dt = cloth->dt, half = 0.5 * dt;
-    for (size_t i = 0; i < 3 * cloth->rows.size; i++) {
+    const long end = ck_rows_place(&cloth->rows, row + 1, 0).tile;
+    for (long i = ck_rows_place(&cloth->rows, row, 0).tile; i < end; i++) {
         const double a = cloth->a[i], kicked = cloth->v[i] + half * a;
         cloth->x[i] += dt * kicked;
         cloth->predicted[i] = kicked + half * a;
@@ -23,12 +17,22 @@ static void advance(ck_ExplicitCloth *cloth) {
     }
 }
 
+// The first row has no springs from above; nor has the second, of those that bend.
+static void run_wave(void *state, long block, int row) {
+    ck_ExplicitCloth *cloth = state;
+    if (block == 0) {
+        advance_row(cloth, row);
+        return;
+    }
+    if (row == 0) memset(cloth->a, 0, 3 * sizeof(double) * (size_t)cloth->rows.stride);
+    cloth->loops->explicit_row(cloth, row, block < cloth->substeps);
+}
+
 void ck_explicit_step(ck_ExplicitCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     // a row reads those below it as the substep before left them
     int reach = cloth->terms & CK_ROW_BENT ? 2 : 1;
     cloth->substeps = substeps;
-    advance(cloth);
-    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, substeps, cloth->rows.rows, reach});
+    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, substeps + 1L, cloth->rows.rows, reach});
 }
 
 void ck_explicit_read(const ck_ExplicitCloth *cloth, double *position, double *velocity) {
@@ -59,8 +63,7 @@ ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, cons
                                 .rows = ck_rows_of(model),
                                 .springs = *springs,
                                 .dt = dt,
-                                .drag = model->drag,
-                                .lightness = 1 / model->mass[0]};
+                                .resistance = model->drag * model->mass[0]};
     cloth->terms = terms_of(model, springs);
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
         cloth->slack[kind] = springs->stiffness[kind] * springs->rest[kind];
@@ -76,7 +79,7 @@ ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, cons
     cloth->v = cloth->state + 3 * size;
     cloth->predicted = cloth->state + 6 * size;
     cloth->a = cloth->state + 9 * size;
-    cloth->is_free = cloth->state + 12 * size;
+    cloth->gain = cloth->state + 12 * size;
     cloth->paired = cloth->pairs;
     cloth->far_paired = cloth->pairs + row.size;
     ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
@@ -84,9 +87,10 @@ ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, cons
     ck_rows_load(&cloth->rows, cloth->x, position);
     ck_rows_load(&cloth->rows, cloth->v, velocity);
     ck_rows_load(&cloth->rows, cloth->a, acceleration);
-    ck_model_field(model, 0, cloth->field);
+    ck_model_field(model, 0, cloth->weight);
+    for (int axis = 0; axis < 3; axis++) cloth->weight[axis] *= model->mass[0];
     for (int i = 0; i < model->particle_count; i++)
-        cloth->is_free[ck_rows_at(&cloth->rows, i / model->columns, i % model->columns).single] = inverse_mass[i] > 0;
+        cloth->gain[ck_rows_at(&cloth->rows, i / model->columns, i % model->columns).single] = dt * inverse_mass[i];
     *out = cloth;
     return CK_OK;
 }

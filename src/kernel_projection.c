@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Sweeps that run interleaved: enough independent work for a processor that waits for each sweep's last result.
 #define DEPTH 4
@@ -30,7 +31,7 @@ void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double
 void ck_projection_destroy(ck_ProjectedCloth *cloth) {
     if (!cloth) return;
     free(cloth->state);
-    free(cloth->pairs);
+    free(cloth->springs);
     free(cloth->multipliers);
     free(cloth->is_held);
     free(cloth);
@@ -40,28 +41,45 @@ bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs) {
     return !model->collider_count && ck_rows_fit(model, springs) && springs->rest[CK_BEND] == 0;
 }
 
+static void set_compliant(ck_Compliant *compliant, const ck_RowSprings *springs, ck_SpringKind kind,
+                          const ck_ProjectionRule *rule, double light) {
+    const double dt = rule->dt, stiffness = rule->compliance > 0 ? 1 / rule->compliance : springs->stiffness[kind];
+    compliant->compliance = 1 / (stiffness * dt * dt);
+    compliant->gamma = springs->damping / (stiffness * dt);
+    const double one = (1 + compliant->gamma) * light + compliant->compliance,
+                 both = one + (1 + compliant->gamma) * light;
+    compliant->share = light / both;
+    compliant->alone = both / one;
+}
+
 static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, const ck_ProjectionRule *rule) {
-    const double light = 1 / cloth->mass, dt = rule->dt;
+    const double dt = rule->dt;
     bool is_elastic =
         rule->projection == CK_PROJECT_SPRINGS && (rule->compliance > 0 || isfinite(springs->stiffness[CK_STRUCTURAL]));
     cloth->rule = *rule;
+    memcpy(cloth->rest, springs->rest, sizeof cloth->rest);
     cloth->carry_way = dt * rule->carry;
     for (int axis = 0; axis < 3; axis++) cloth->push_way[axis] = dt * rule->push[axis];
     cloth->terms = rule->projection == CK_PROJECT_BARS ? CK_SWEEP_BARS : 0;
     if (is_elastic)
         cloth->terms |= (springs->damping > 0 ? CK_SWEEP_DAMPED : 0) | (rule->iterations > 1 ? CK_SWEEP_REPEATED : 0);
-    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-        ck_Compliant *compliant = &cloth->compliant[kind];
-        const double rest = springs->rest[kind];
-        cloth->rest[kind] = rest;
-        cloth->quarter_rest[kind] = 0.25 * rule->relaxation * rest * rest;
-        cloth->least_along[kind] = 0.5 * rest * rest;
-        if (springs->rest[kind] == 0) continue;
-        double stiffness = rule->compliance > 0 ? 1 / rule->compliance : springs->stiffness[kind];
-        compliant->compliance = 1 / (stiffness * dt * dt);
-        compliant->gamma = springs->damping / (stiffness * dt);
-        compliant->one_free = rule->relaxation * light / ((1 + compliant->gamma) * light + compliant->compliance);
-        compliant->both_free = rule->relaxation * light / ((1 + compliant->gamma) * 2 * light + compliant->compliance);
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
+        if (springs->rest[kind] > 0) set_compliant(&cloth->compliant[kind], springs, kind, rule, 1 / cloth->mass);
+}
+
+static void fill_stripes(ck_ProjectedCloth *cloth, ck_Direction direction) {
+    const ck_SpringKind kind = direction == CK_IS_ACROSS ? CK_SHEAR : CK_STRUCTURAL;
+    const double rest = cloth->rest[kind], square = rest * rest;
+    bool are_bars = cloth->rule.projection == CK_PROJECT_BARS;
+    double share = cloth->rule.relaxation * (are_bars ? 0.05 / square : cloth->compliant[kind].share);
+    for (int column = 0; column < cloth->rows.span * CK_STRIPE; column++) {
+        ck_Stripe *stripe = &cloth->stripes[direction][column % cloth->rows.span];
+        const int lane = column / cloth->rows.span;
+        bool is_there = rest > 0 && column + (direction != CK_IS_DOWN) < cloth->rows.columns;
+        stripe->share[lane] = is_there ? share : 0;
+        stripe->share_rest[lane] = is_there ? share * (are_bars ? square : rest) : 0;
+        stripe->quotient[lane] = is_there ? 10 : 5;
+        stripe->steepness[lane] = is_there ? 5 / square : 0;
     }
 }
 
@@ -72,8 +90,8 @@ static void place_arrays(ck_ProjectedCloth *cloth) {
     cloth->v = cloth->state + 6 * size;
     cloth->before = cloth->state + 9 * size;
     cloth->is_free = cloth->state + 12 * size;
-    cloth->paired = cloth->pairs;
-    cloth->all = cloth->pairs + cloth->rows.stride;
+    for (int direction = 0; direction < CK_DIRECTIONS; direction++)
+        cloth->stripes[direction] = (ck_Stripe *)cloth->springs + direction * cloth->rows.span;
     // the colours along a row have the row's vectors between them
     for (int colour = 0; colour <= CK_DOWN_LEFT && cloth->multipliers; colour++)
         cloth->multiplier[colour] =
@@ -103,20 +121,19 @@ ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Loops *loops, c
     cloth->rows = ck_rows_of(model);
     cloth->mass = model->mass[0];
     set_rule(cloth, springs, rule);
-    const ck_Rows row = {.size = (size_t)cloth->rows.stride};
+    const ck_Rows stripes = {.size = (size_t)cloth->rows.span * sizeof(ck_Stripe) / sizeof(double)};
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
-    cloth->pairs = ck_rows_allocate(&row, 2);
+    cloth->springs = ck_rows_allocate(&stripes, CK_DIRECTIONS);
     cloth->multipliers = cloth->terms & CK_SWEEP_REPEATED ? ck_rows_allocate(&cloth->rows, 4) : NULL;
     cloth->is_held = calloc((size_t)cloth->rows.rows, sizeof *cloth->is_held);
-    if (!cloth->state || !cloth->pairs || !cloth->is_held ||
+    if (!cloth->state || !cloth->springs || !cloth->is_held ||
         ((cloth->terms & CK_SWEEP_REPEATED) && !cloth->multipliers)) {
         ck_projection_destroy(cloth);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
     place_arrays(cloth);
     mark_free(cloth, inverse_mass);
-    ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
-    ck_rows_mark_paired(&cloth->rows, 0, cloth->all);
+    for (int direction = 0; direction < CK_DIRECTIONS; direction++) fill_stripes(cloth, direction);
     ck_rows_load(&cloth->rows, cloth->x, position);
     ck_rows_load(&cloth->rows, cloth->v, velocity);
     ck_rows_load(&cloth->rows, cloth->before, before);

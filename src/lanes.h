@@ -52,8 +52,10 @@ CK_INLINE ck_Lanes ck_lanes_all(double value) {
 
 // What C has no words for. c + a·b and c − a·b are rounded once where the processor can: named outright and not left to
 // the compiler (-ffp-contract=off), whose choice depends on what else uses a product. So all that fuse give the same
-// bits. A mask is what a comparison leaves for a choice. Where each lane goes to the next, the first comes from the
-// vector before.
+// bits. A mask is what a comparison leaves for a choice. Moderate is what lies from 2 to less than 8, or 0: the sign
+// and all but the ends of the exponent have no bit there, which one look at the bits shows. Where each lane goes to the
+// next, the first comes from the vector before.
+#define CK_NOT_MODERATE ((int64_t)0xbfe0000000000000)
 #if CK_LANES == 8
 typedef __mmask8 ck_LaneMask;
 
@@ -71,6 +73,14 @@ CK_INLINE ck_LaneMask ck_lanes_less(ck_Lanes a, ck_Lanes b) {
 
 CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) {
     return (ck_Lanes)_mm512_mask_blend_pd(mask, (__m512d)no, (__m512d)yes);
+}
+
+CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
+    return _mm512_testn_epi64_mask((__m512i)a, _mm512_set1_epi64(CK_NOT_MODERATE));
+}
+
+CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
+    return _mm512_test_epi64_mask((__m512i)a, _mm512_set1_epi64(CK_NOT_MODERATE)) == 0;
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
@@ -93,6 +103,14 @@ CK_INLINE ck_LaneMask ck_lanes_less(ck_Lanes a, ck_Lanes b) {
 
 CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) {
     return (ck_Lanes)_mm256_blendv_pd((__m256d)no, (__m256d)yes, mask);
+}
+
+CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
+    return (__m256d)(((ck_LaneBits)a & CK_NOT_MODERATE) == 0);
+}
+
+CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
+    return _mm256_testz_si256((__m256i)a, _mm256_set1_epi64x(CK_NOT_MODERATE));
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
@@ -121,22 +139,30 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
     return (ck_Lanes)(((ck_LaneBits)yes & mask) | ((ck_LaneBits)no & ~mask));
 }
 
+CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
+    return ((ck_LaneBits)a & CK_NOT_MODERATE) == 0;
+}
+
+CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
+    const ck_LaneBits bits = (ck_LaneBits)a;
+    return ((bits[0] | bits[1]) & CK_NOT_MODERATE) == 0;
+}
+
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
     return __builtin_shuffle(before, value, (ck_LaneBits){1, 2});
 }
 #endif
 
-// 1/√x, good to an ulp or two, in products and sums only: a vector's square root and division take four times as long.
-// The guess is off by at most 3.5 % (Lomont 2003, Fast inverse square root, with the constant for doubles); the cubic
-// in x·y² that is off least over such guesses leaves 7.5e-7, and a step of third order turns an error e into 2.5·e³. Of
-// 0 it makes a number.
+// 1/√x, good to 4e-14 and the same for the same x, in products and sums only: a vector's square root and division take
+// four times as long. The guess is off by at most 3.5 % (Lomont 2003, Fast inverse square root, with the constant for
+// doubles); the parabola in x·y² that is off least over such guesses leaves 2.5e-5, and a step of third order turns an
+// error e into 2.5·e³: to a spring the same as a rest length off by that. Of 0 it makes a number.
 CK_INLINE void ck_lanes_inverse_root(ck_Lanes *y, const ck_Lanes *x, const int count) {
-    static const double c[] = {2.1893327466157473, 2.191720621898141, 1.3154411882588606, 0.31305405935214803};
+    static const double c[] = {1.8765983439634224, 1.252100341927225, 0.37550221129439404};
     ck_Lanes t[CK_MOST_TOGETHER], p[CK_MOST_TOGETHER];
     for (int i = 0; i < count; i++) y[i] = (ck_Lanes)(0x5fe6eb50c7b537a9 - ((ck_LaneBits)x[i] >> 1));
     for (int i = 0; i < count; i++) t[i] = x[i] * y[i] * y[i];
-    for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[2]), ck_lanes_all(c[3]), t[i]);
-    for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[1]), p[i], t[i]);
+    for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[1]), ck_lanes_all(c[2]), t[i]);
     for (int i = 0; i < count; i++) p[i] = ck_lanes_minus(ck_lanes_all(c[0]), p[i], t[i]);
     for (int i = 0; i < count; i++) y[i] *= p[i];
     for (int i = 0; i < count; i++) t[i] = ck_lanes_minus(ck_lanes_all(1), x[i] * y[i], y[i]);

@@ -91,26 +91,27 @@ CK_INLINE void pull_vector(const struct ck_ExplicitCloth *cloth, Pulls *pulls, i
     pulls->below_right = ck_lanes3_subtract_scaled(pulls->below_right, scale[DOWN_RIGHT], d[DOWN_RIGHT]);
 }
 
-// a ← w·force + field − drag·v*. With another substep to come v ← v + a·dt, x ← x + v·dt, v* = v + a·dt/2: its start,
-// too; else v ← v + a·dt/2.
+// a ← w·(force − drag·v*). With another substep to come v ← v + a·dt, x ← x + v·dt, v* = v + a·dt/2: its start, too;
+// else v ← v + a·dt/2.
 CK_INLINE void finish(const struct ck_ExplicitCloth *cloth, ck_Place at, ck_Lanes3 force, bool advances,
                       const int terms) {
-    const double dt = cloth->dt, half = 0.5 * dt;
+    const double dt = cloth->dt;
+    const ck_Lanes gain = ck_lanes_load(cloth->gain + at.single);
     ck_Lanes3 v = ck_lanes3_load(cloth->v + at.tile);
-    ck_Lanes3 push = ck_lanes3_add_scaled(ck_lanes3_all(cloth->field), ck_lanes_all(cloth->lightness), force);
     if (terms & DRAGGED)
-        push = ck_lanes3_subtract_scaled(push, ck_lanes_all(cloth->drag), ck_lanes3_load(cloth->predicted + at.tile));
-    ck_Lanes3 a = ck_lanes3_scale(ck_lanes_load(cloth->is_free + at.single), push);
-    v = ck_lanes3_add_scaled(v, ck_lanes_all(advances ? dt : half), a);
-    ck_lanes3_store(cloth->v + at.tile, v);
+        force = ck_lanes3_subtract_scaled(force, ck_lanes_all(cloth->resistance),
+                                          ck_lanes3_load(cloth->predicted + at.tile));
     if (!advances) {
-        ck_lanes3_store(cloth->a + at.tile, a);
+        ck_lanes3_store(cloth->v + at.tile, ck_lanes3_add_scaled(v, 0.5 * gain, force));
+        ck_lanes3_store(cloth->a + at.tile, ck_lanes3_scale(gain * (1 / dt), force));
         return;
     }
+    v = ck_lanes3_add_scaled(v, gain, force);
+    ck_lanes3_store(cloth->v + at.tile, v);
     ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile);
     ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(x, ck_lanes_all(dt), v));
     if (terms & (DAMPED | DRAGGED))
-        ck_lanes3_store(cloth->predicted + at.tile, ck_lanes3_add_scaled(v, ck_lanes_all(half), a));
+        ck_lanes3_store(cloth->predicted + at.tile, ck_lanes3_add_scaled(v, 0.5 * gain, force));
 }
 
 // A vector whose row's springs are done is not read again and ends its substep at once.
@@ -126,24 +127,26 @@ CK_INLINE void end_vector(const struct ck_ExplicitCloth *cloth, const Pulls *pul
     finish(cloth, at, ck_lanes3_add(ck_lanes3_load(cloth->a + at.tile), pulls->here), advances, terms);
 }
 
-// The last vector's springs come first: what they pull to the right is on the first vector, one lane on.
+// The last vector's springs come first: what they pull to the right is on the first vector, one lane on. To the right
+// each pulls with the weight of what is there, too, which so comes in once.
 CK_INLINE void pass(const struct ck_ExplicitCloth *cloth, int row, bool advances, const int terms) {
     const int last = cloth->rows.span - 1;
+    const ck_Lanes3 weight = ck_lanes3_all(cloth->weight);
     Pulls lasts[CK_STRIPE / CK_LANES];
     // from the last lanes on, so that a vector that is its own right has the sums of its springs in one order
     for (int i = 0; i <= last && (terms & BENT); i++)
         for (int lane = CK_STRIPE - CK_LANES; lane >= 0; lane -= CK_LANES) bend_vector(cloth, row, i, lane, terms);
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
-        lasts[lane / CK_LANES] = (Pulls){none, none, none, none};
+        lasts[lane / CK_LANES] = (Pulls){none, weight, none, none};
         pull_vector(cloth, &lasts[lane / CK_LANES], row, last, lane, terms);
     }
     const Pulls *before = NULL;
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
         Pulls *end = &lasts[lane / CK_LANES];
-        Pulls pulls = {.right = ck_lanes3_next(before ? before->right : none, end->right),
+        Pulls pulls = {.right = ck_lanes3_next(before ? before->right : weight, end->right),
                        .below_right = ck_lanes3_next(before ? before->below_right : none, end->below_right)};
         for (int i = 0; i < last; i++) {
-            pulls = (Pulls){pulls.right, none, pulls.below_right, none};
+            pulls = (Pulls){pulls.right, weight, pulls.below_right, none};
             pull_vector(cloth, &pulls, row, i, lane, terms);
             end_vector(cloth, &pulls, row, i, lane, advances, terms);
         }

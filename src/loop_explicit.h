@@ -9,14 +9,15 @@ struct ck_ExplicitCloth {
     const ck_Loops *loops;
     ck_Rows rows;
     ck_RowSprings springs;
-    double slack[CK_SPRING_KINDS];        // N: k·L
-    double dt, drag, lightness, field[3]; // lightness: 1/kg; field: m/s², on every free particle
+    double slack[CK_SPRING_KINDS];    // N: k·L
+    double dt, resistance, weight[3]; // s; N·s/m and N on each particle, of drag and of what pulls on all
     int terms;
     uint32_t substeps; // of this call
     // tiles; v, between substeps of a call, is half a substep ahead
     double *x, *v, *predicted;
-    double *a; // acceleration at the end of a call, else the springs' forces from above so far
-    double *is_free, *paired, *far_paired;
+    double *a;    // acceleration at the end of a call, else the springs' forces from above so far
+    double *gain; // m/s a substep for each N: dt/m where free, else 0
+    double *paired, *far_paired;
     double *state, *pairs;
 };
 

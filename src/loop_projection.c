@@ -15,9 +15,18 @@ enum { DAMPED = CK_SWEEP_DAMPED, REPEATED = CK_SWEEP_REPEATED, BARS = CK_SWEEP_B
 typedef struct Ends {
     ck_Place a, b;
     ck_SpringKind kind;
-    const double *paired; // 1 where there is a spring, else 0
     double *multiplier;
 } Ends;
+
+// What a stripe says of them.
+typedef struct Springs {
+    ck_Lanes share, share_rest, quotient, steepness;
+} Springs;
+
+CK_INLINE Springs springs_of(const ck_Stripe *stripe, int lane) {
+    return (Springs){ck_lanes_load(stripe->share + lane), ck_lanes_load(stripe->share_rest + lane),
+                     ck_lanes_load(stripe->quotient + lane), ck_lanes_load(stripe->steepness + lane)};
+}
 
 // 0 where one of two ends is free, 1 where both are or none: then none will move.
 CK_INLINE ck_Lanes both_alike(const ck_ProjectedCloth *cloth, const Ends *ends) {
@@ -43,36 +52,68 @@ CK_INLINE ck_Lanes3 span_of(const double *tiles, const Ends *ends) {
     return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
 }
 
-// By (l² − L²)/(4·(d·d_start)) along d_start, where masses cancel. A bar that turned by more than 60° in a substep is
-// projected along itself instead.
-CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const int terms) {
-    const double quarter = 0.25 * cloth->rule.relaxation, least = cloth->least_along[ends->kind];
-    ck_Lanes3 now = span_of(cloth->x, ends), way = span_of(cloth->start, ends);
-    ck_Lanes along = ck_lanes3_dot(now, way), squared = ck_lanes3_dot(now, now);
-    ck_LaneMask turned = ck_lanes_less(along, ck_lanes_all(least));
-    way = ck_lanes3_choose(turned, now, way);
-    along = ck_lanes_choose(turned, squared, along);
-    ck_Lanes share = ck_lanes_plus(ck_lanes_all(-cloth->quarter_rest[ends->kind]), ck_lanes_all(quarter), squared);
-    if (terms & HELD) share += share - share * both_alike(cloth, ends);
-    move(cloth, ends, ck_lanes_load(ends->paired) * (share / (along + TINY)), way, terms);
+// By s·(l² − L²)/(4·d·d_start) along d_start, where masses cancel; s is the relaxation.
+typedef struct Bars {
+    ck_Lanes3 now, start;
+    ck_Lanes along, squared; // d·d_start, d²
+    ck_Lanes share;          // s·(l²/L² − 1)/20
+    ck_Lanes quotient;       // 5·(2 − d·d_start/L²)
+} Bars;
+
+CK_INLINE Bars bars_of(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs) {
+    Bars bars = {.now = span_of(cloth->x, ends), .start = span_of(cloth->start, ends)};
+    bars.along = ck_lanes3_dot(bars.now, bars.start);
+    bars.squared = ck_lanes3_dot(bars.now, bars.now);
+    bars.share = ck_lanes_plus(-springs->share_rest, springs->share, bars.squared);
+    bars.quotient = ck_lanes_minus(springs->quotient, springs->steepness, bars.along);
+    return bars;
+}
+
+CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way,
+                         const int terms) {
+    if (terms & HELD) scale += scale - scale * both_alike(cloth, ends);
+    move(cloth, ends, scale, way, terms);
+}
+
+// Bars of which one is far from its length, or turned: one that turned by more than 66° is projected along itself.
+// Seldom, and not in line, so that the others' registers are their own.
+static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs,
+                                                  bool held) {
+    const Bars bars = bars_of(cloth, &ends, &springs);
+    const double square = cloth->rest[ends.kind] * cloth->rest[ends.kind];
+    ck_LaneMask turned = ck_lanes_less(bars.along, ck_lanes_all(0.4 * square));
+    ck_Lanes along = ck_lanes_choose(turned, bars.squared, bars.along);
+    ck_Lanes scale = ck_lanes_choose(ck_lanes_moderate(bars.quotient), bars.share * bars.quotient,
+                                     bars.share * (5 * square) / (along + TINY));
+    move_bars(cloth, &ends, scale, ck_lanes3_choose(turned, bars.now, bars.start), held ? HELD : 0);
+}
+
+// A division takes as long as all the rest. So 1/(d·d_start) is (2 − d·d_start/L²)/L², a Newton step from 1/L², where
+// that is 0.4/L² to 1.6/L²: off by the square of what the bar is off by, and never too much.
+CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, const int terms) {
+    const Bars bars = bars_of(cloth, ends, springs);
+    if (__builtin_expect(!ck_lanes_all_moderate(bars.quotient), 0))
+        project_far(cloth, *ends, *springs, (terms & HELD) != 0);
+    else
+        move_bars(cloth, ends, bars.share * bars.quotient, bars.start, terms);
 }
 
 // By the share of (1 − L'/l), along the spring, that is its own: L' is the length at which it would rest.
-CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, const int terms) {
+CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs,
+                              const int terms) {
     const ck_Compliant *compliant = &cloth->compliant[ends->kind];
-    const double one_free = compliant->one_free, both_free = compliant->both_free;
     ck_Lanes3 now = span_of(cloth->x, ends);
     ck_Lanes squared = ck_lanes3_dot(now, now), inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
-    ck_Lanes rest = ck_lanes_all(cloth->rest[ends->kind]), share = ck_lanes_all(both_free);
+    ck_Lanes share = springs->share, share_rest = springs->share_rest;
     if (terms & REPEATED)
-        rest = ck_lanes_minus(rest, ck_lanes_all(compliant->compliance), ck_lanes_load(ends->multiplier));
+        share_rest = ck_lanes_minus(share_rest, compliant->compliance * share, ck_lanes_load(ends->multiplier));
     if (terms & DAMPED) {
         ck_Lanes3 moved = ck_lanes3_subtract(now, span_of(cloth->start, ends));
-        rest = ck_lanes_minus(rest, compliant->gamma * ck_lanes3_dot(moved, now), inverse);
+        share_rest = ck_lanes_minus(share_rest, compliant->gamma * share * ck_lanes3_dot(moved, now), inverse);
     }
-    if (terms & HELD) share = one_free + (both_free - one_free) * both_alike(cloth, ends);
-    ck_Lanes scale = ck_lanes_load(ends->paired) * ck_lanes_minus(share, share * rest, inverse);
+    ck_Lanes scale = ck_lanes_minus(share, share_rest, inverse);
+    if (terms & HELD) scale *= compliant->alone + (1 - compliant->alone) * both_alike(cloth, ends);
     if (terms & REPEATED)
         ck_lanes_store(ends->multiplier,
                        ck_lanes_minus(ck_lanes_load(ends->multiplier), cloth->mass * scale, squared * inverse));
@@ -82,14 +123,13 @@ CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, 
 CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, ck_Colour colour, int row, int vector) {
     const ck_Rows *rows = &cloth->rows;
     const ck_Place here = ck_rows_place(rows, row, vector), below = ck_rows_place(rows, row + 1, vector);
-    const double *paired = cloth->paired + vector * CK_STRIPE;
     double *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + here.single : NULL;
     switch (colour) {
     case CK_DOWN:
-    case CK_DOWN_LATE: return (Ends){here, below, CK_STRUCTURAL, cloth->all + vector * CK_STRIPE, multiplier};
-    case CK_DOWN_RIGHT: return (Ends){here, ck_rows_right(rows, row + 1, vector, 1), CK_SHEAR, paired, multiplier};
-    case CK_DOWN_LEFT: return (Ends){ck_rows_right(rows, row, vector, 1), below, CK_SHEAR, paired, multiplier};
-    default: return (Ends){here, ck_rows_right(rows, row, vector, 1), CK_STRUCTURAL, paired, multiplier};
+    case CK_DOWN_LATE: return (Ends){here, below, CK_STRUCTURAL, multiplier};
+    case CK_DOWN_RIGHT: return (Ends){here, ck_rows_right(rows, row + 1, vector, 1), CK_SHEAR, multiplier};
+    case CK_DOWN_LEFT: return (Ends){ck_rows_right(rows, row, vector, 1), below, CK_SHEAR, multiplier};
+    default: return (Ends){here, ck_rows_right(rows, row, vector, 1), CK_STRUCTURAL, multiplier};
     }
 }
 
@@ -97,8 +137,12 @@ CK_INLINE Ends ends_after(Ends ends, long singles, long tiles) {
     return (Ends){{ends.a.single + singles, ends.a.tile + tiles},
                   {ends.b.single + singles, ends.b.tile + tiles},
                   ends.kind,
-                  ends.paired + singles,
                   ends.multiplier ? ends.multiplier + singles : NULL};
+}
+
+CK_INLINE ck_Direction direction_of(ck_Colour colour) {
+    if (colour == CK_DOWN_RIGHT || colour == CK_DOWN_LEFT) return CK_IS_ACROSS;
+    return colour == CK_DOWN || colour == CK_DOWN_LATE ? CK_IS_DOWN : CK_IS_ALONG;
 }
 
 // The vectors of a row that are of a colour: first, first + step … below end.
@@ -115,28 +159,31 @@ CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, ck_Colour colour, i
     return (Vectors){0, 1, is_there ? span : 0};
 }
 
-CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const int terms) {
+CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe,
+                              const int terms) {
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
         const Ends part = ends_after(*ends, lane, lane);
+        const Springs springs = springs_of(stripe, lane);
         if (terms & BARS)
-            project_bar(cloth, &part, terms);
+            project_bar(cloth, &part, &springs, terms);
         else
-            project_spring(cloth, &part, terms);
+            project_spring(cloth, &part, &springs, terms);
     }
 }
 
 // The last vector, whose right is the first, comes by itself.
 CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, int row, const int terms) {
+    const ck_Stripe *stripes = cloth->stripes[direction_of(colour)];
     const Vectors vectors = vectors_of(cloth, colour, row);
     const int last = cloth->rows.span - 1;
     Ends ends = ends_of(cloth, colour, row, vectors.first);
     for (int i = vectors.first; i < vectors.end && i < last; i += vectors.step) {
-        project_stripe(cloth, &ends, terms);
+        project_stripe(cloth, &ends, &stripes[i], terms);
         ends = ends_after(ends, vectors.step * CK_STRIPE, vectors.step * 3 * CK_STRIPE);
     }
     if (vectors.end <= last) return;
     ends = ends_of(cloth, colour, row, last);
-    project_stripe(cloth, &ends, terms);
+    project_stripe(cloth, &ends, &stripes[last], terms);
 }
 
 #define COLOURS 6

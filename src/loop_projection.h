@@ -22,25 +22,37 @@ typedef enum ck_Colour {
 
 // What a correction needs of a kind of springs.
 typedef struct ck_Compliant {
-    double compliance, gamma;   // α̃ and γ̃
-    double one_free, both_free; // relaxation·w/((1 + γ̃)·W + α̃) with one end free, or both
+    double compliance, gamma; // α̃ and γ̃
+    double share;             // w/((1 + γ̃)·W + α̃), both ends free
+    double alone;             // times which one end moves where the other is held
 } ck_Compliant;
+
+// Eight springs of one kind, a lane each; 0 where there is none: that moves nothing.
+typedef struct ck_Stripe {
+    double share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(20·L²)
+    double share_rest[CK_STRIPE]; // that times L, of bars times L²
+    // of bars, 10 and 5/L²; 5 where there is none
+    double quotient[CK_STRIPE], steepness[CK_STRIPE];
+} ck_Stripe;
+
+// A row's springs: those down, along it and across. All rows are alike.
+typedef enum ck_Direction { CK_IS_DOWN, CK_IS_ALONG, CK_IS_ACROSS, CK_DIRECTIONS } ck_Direction;
 
 struct ck_ProjectedCloth {
     const ck_Loops *loops;
     ck_Rows rows;
     ck_ProjectionRule rule;
-    double carry_way, push_way[3];                                      // of the rule, times dt
-    double quarter_rest[CK_SPRING_KINDS], least_along[CK_SPRING_KINDS]; // m²: relaxation·L²/4, L²/2
-    double mass, rest[CK_SPRING_KINDS];                                 // kg, m
+    double carry_way, push_way[3];      // of the rule, times dt
+    double mass, rest[CK_SPRING_KINDS]; // kg, m
     ck_Compliant compliant[CK_SPRING_KINDS];
+    ck_Stripe *stripes[CK_DIRECTIONS]; // [span]
     int terms;
     long sweeps;                    // of this call
     double *x, *start, *v, *before; // tiles
-    double *is_free, *paired, *all;
+    double *is_free;
     double *multiplier[CK_COLOUR_COUNT]; // NULL: one sweep starts from 0 and needs none
     bool *is_held;                       // [rows] a pin in the row or the one below
-    double *state, *pairs, *multipliers;
+    double *state, *springs, *multipliers;
 };
 
 // What a cloth does not have is not in its loop; HELD is a row's.

@@ -9,18 +9,23 @@
 
 // Looks at another thread's progress before this one gives way, some 10 µs.
 #define LOOKS 2000
+// Looks for a next job before a thread sleeps, some 100 µs: to wake it takes as long as a frame of a small cloth.
+#define IDLE_LOOKS 20000
+
+typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
 typedef struct Worker {
     _Alignas(64) atomic_long done; // waves of all blocks so far, counted from the first of the first block
+    atomic_int call;
     struct ck_Waves *waves;
     int index;
     pthread_t thread;
-    sem_t start, end;
+    sem_t wake;
 } Worker;
 
 struct ck_Waves {
     int threads, parts; // parts: threads that have work in this job
-    const ck_WaveWork *work;
+    ck_WaveWork work;
     bool stops;
     Worker workers[]; // the first is the caller
 };
@@ -30,33 +35,45 @@ static void wait_for(Worker *worker, long done) {
         if (looks >= LOOKS) sched_yield();
 }
 
-static int part_start(const ck_Waves *waves, int part) {
-    return (int)((long)waves->work->waves * part / waves->parts);
+static int part_start(const ck_WaveWork *work, int parts, int part) {
+    return (int)((long)work->waves * part / parts);
 }
 
-// The part of every block that is this thread's.
+// The part of every block that is this thread's. Nothing of the job is touched once the last wave is told to be done.
 static void run_part(ck_Waves *waves, int part) {
-    const ck_WaveWork *work = waves->work;
-    const int first = part_start(waves, part), end = part_start(waves, part + 1);
+    const ck_WaveWork work = waves->work;
+    const int first = part_start(&work, waves->parts, part), end = part_start(&work, waves->parts, part + 1);
     Worker *self = &waves->workers[part];
-    for (long block = 0; block < work->blocks; block++) {
-        if (part > 0) wait_for(self - 1, block * work->waves + first);
+    for (long block = 0; block < work.blocks; block++) {
+        if (part > 0) wait_for(self - 1, block * work.waves + first);
         for (int wave = first; wave < end; wave++) {
-            int needed = wave + work->reach < work->waves ? wave + work->reach : work->waves - 1;
-            if (block > 0 && needed >= end) wait_for(self + 1, (block - 1) * work->waves + needed + 1);
-            work->run(work->state, block, wave);
-            atomic_store_explicit(&self->done, block * work->waves + wave + 1, memory_order_release);
+            int needed = wave + work.reach < work.waves ? wave + work.reach : work.waves - 1;
+            if (block > 0 && needed >= end) wait_for(self + 1, (block - 1) * work.waves + needed + 1);
+            work.run(work.state, block, wave);
+            // what the neighbours wait for; each time told takes the line away from one that looks
+            if (wave < first + work.reach || wave + 1 == end)
+                atomic_store_explicit(&self->done, block * work.waves + wave + 1, memory_order_release);
         }
     }
+}
+
+static void call(Worker *worker) {
+    if (atomic_exchange(&worker->call, CALLED) == ASLEEP) sem_post(&worker->wake);
+}
+
+static void wait_for_call(Worker *worker) {
+    int idle = IDLE;
+    for (int looks = 0; looks < IDLE_LOOKS && atomic_load(&worker->call) != CALLED; looks++) continue;
+    if (atomic_compare_exchange_strong(&worker->call, &idle, ASLEEP)) sem_wait(&worker->wake);
+    atomic_store(&worker->call, IDLE);
 }
 
 static void *serve(void *argument) {
     Worker *worker = argument;
     for (;;) {
-        sem_wait(&worker->start);
+        wait_for_call(worker);
         if (worker->waves->stops) return NULL;
         run_part(worker->waves, worker->index);
-        sem_post(&worker->end);
     }
 }
 
@@ -73,8 +90,8 @@ ck_Status ck_waves_create(ck_Waves **out, int threads, ck_Error *error) {
         Worker *worker = &waves->workers[i];
         worker->waves = waves;
         worker->index = i;
-        sem_init(&worker->start, 0, 0);
-        sem_init(&worker->end, 0, 0);
+        atomic_init(&worker->call, IDLE);
+        sem_init(&worker->wake, 0, 0);
         if (pthread_create(&worker->thread, NULL, serve, worker)) {
             ck_waves_destroy(waves);
             return ck_fail(error, CK_NO_MEMORY, "no thread %d of %d", i + 1, threads);
@@ -89,10 +106,9 @@ void ck_waves_destroy(ck_Waves *waves) {
     if (!waves) return;
     waves->stops = true;
     for (int i = 1; i < waves->threads; i++) {
-        sem_post(&waves->workers[i].start);
+        call(&waves->workers[i]);
         pthread_join(waves->workers[i].thread, NULL);
-        sem_destroy(&waves->workers[i].start);
-        sem_destroy(&waves->workers[i].end);
+        sem_destroy(&waves->workers[i].wake);
     }
     free(waves);
 }
@@ -105,10 +121,13 @@ void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
             for (int wave = 0; wave < work->waves; wave++) work->run(work->state, block, wave);
         return;
     }
-    waves->work = work;
+    waves->work = *work;
     waves->parts = parts;
     for (int i = 0; i < parts; i++) atomic_store(&waves->workers[i].done, 0);
-    for (int i = 1; i < parts; i++) sem_post(&waves->workers[i].start);
+    for (int i = 1; i < parts; i++) call(&waves->workers[i]);
     run_part(waves, 0);
-    for (int i = 1; i < parts; i++) sem_wait(&waves->workers[i].end);
+    for (int i = 1; i < parts; i++) {
+        const int end = part_start(work, parts, i + 1);
+        wait_for(&waves->workers[i], (work->blocks - 1) * work->waves + end);
+    }
 }

@@ -23,8 +23,9 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
-// Returns when all is done. Parts of fewer than 2·reach waves are given to fewer threads. Cost: one atomic store a
-// wave; a thread that waits burns its time, and gives way after a while.
+// Returns when all is done. Parts of fewer than 2·reach waves are given to fewer threads. Cost: some atomic
+// stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1
+// ms.
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work);
 
 #endif
