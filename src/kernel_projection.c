@@ -78,8 +78,13 @@ static void fill_stripes(ck_ProjectedCloth *cloth, ck_Direction direction) {
         bool is_there = rest > 0 && column + (direction != CK_IS_DOWN) < cloth->rows.columns;
         stripe->share[lane] = is_there ? share : 0;
         stripe->share_rest[lane] = is_there ? share * (are_bars ? square : rest) : 0;
-        stripe->quotient[lane] = is_there ? 10 : 5;
-        stripe->steepness[lane] = is_there ? 5 / square : 0;
+        if (are_bars) {
+            stripe->quotient[lane] = is_there ? 10 : 5;
+            stripe->steepness[lane] = is_there ? 5 / square : 0;
+        } else {
+            stripe->softness[lane] = stripe->share[lane] * cloth->compliant[kind].compliance * cloth->mass;
+            stripe->viscosity[lane] = stripe->share[lane] * cloth->compliant[kind].gamma;
+        }
     }
 }
 

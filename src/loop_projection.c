@@ -18,14 +18,15 @@ typedef struct Ends {
     double *multiplier;
 } Ends;
 
-// What a stripe says of them.
+// What a stripe says of them: the first two of both, the others of bars or springs.
 typedef struct Springs {
-    ck_Lanes share, share_rest, quotient, steepness;
+    ck_Lanes share, share_rest, quotient, steepness, softness, viscosity;
 } Springs;
 
 CK_INLINE Springs springs_of(const ck_Stripe *stripe, int lane) {
-    return (Springs){ck_lanes_load(stripe->share + lane), ck_lanes_load(stripe->share_rest + lane),
-                     ck_lanes_load(stripe->quotient + lane), ck_lanes_load(stripe->steepness + lane)};
+    return (Springs){ck_lanes_load(stripe->share + lane),    ck_lanes_load(stripe->share_rest + lane),
+                     ck_lanes_load(stripe->quotient + lane), ck_lanes_load(stripe->steepness + lane),
+                     ck_lanes_load(stripe->softness + lane), ck_lanes_load(stripe->viscosity + lane)};
 }
 
 // 0 where one of two ends is free, 1 where both are or none: then none will move.
@@ -106,17 +107,15 @@ CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, 
     ck_Lanes squared = ck_lanes3_dot(now, now), inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
     ck_Lanes share = springs->share, share_rest = springs->share_rest;
-    if (terms & REPEATED)
-        share_rest = ck_lanes_minus(share_rest, compliant->compliance * share, ck_lanes_load(ends->multiplier));
+    if (terms & REPEATED) share_rest = ck_lanes_minus(share_rest, springs->softness, ck_lanes_load(ends->multiplier));
     if (terms & DAMPED) {
         ck_Lanes3 moved = ck_lanes3_subtract(now, span_of(cloth->start, ends));
-        share_rest = ck_lanes_minus(share_rest, compliant->gamma * share * ck_lanes3_dot(moved, now), inverse);
+        share_rest = ck_lanes_minus(share_rest, springs->viscosity * ck_lanes3_dot(moved, now), inverse);
     }
     ck_Lanes scale = ck_lanes_minus(share, share_rest, inverse);
     if (terms & HELD) scale *= compliant->alone + (1 - compliant->alone) * both_alike(cloth, ends);
     if (terms & REPEATED)
-        ck_lanes_store(ends->multiplier,
-                       ck_lanes_minus(ck_lanes_load(ends->multiplier), cloth->mass * scale, squared * inverse));
+        ck_lanes_store(ends->multiplier, ck_lanes_minus(ck_lanes_load(ends->multiplier), scale, squared * inverse));
     move(cloth, ends, scale, now, terms);
 }
 

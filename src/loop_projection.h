@@ -31,8 +31,14 @@ typedef struct ck_Compliant {
 typedef struct ck_Stripe {
     double share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(20·L²)
     double share_rest[CK_STRIPE]; // that times L, of bars times L²
-    // of bars, 10 and 5/L²; 5 where there is none
-    double quotient[CK_STRIPE], steepness[CK_STRIPE];
+    union {
+        double quotient[CK_STRIPE]; // of bars 10; 5 where there is none
+        double softness[CK_STRIPE]; // of springs share·α̃·m
+    };
+    union {
+        double steepness[CK_STRIPE]; // of bars 5/L²
+        double viscosity[CK_STRIPE]; // of springs share·γ̃
+    };
 } ck_Stripe;
 
 // A row's springs: those down, along it and across. All rows are alike.
@@ -50,7 +56,7 @@ struct ck_ProjectedCloth {
     long sweeps;                    // of this call
     double *x, *start, *v, *before; // tiles
     double *is_free;
-    double *multiplier[CK_COLOUR_COUNT]; // NULL: one sweep starts from 0 and needs none
+    double *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
     bool *is_held;                       // [rows] a pin in the row or the one below
     double *state, *springs, *multipliers;
 };
