@@ -22,6 +22,13 @@
 #define CK_LANES 2
 #endif
 
+// Products and sums are rounded once.
+#if CK_LANES > 2 || defined(__FP_FAST_FMA)
+#define CK_FUSES true
+#else
+#define CK_FUSES false
+#endif
+
 // The name of a loop in this compilation: CK_VECTORS says for which vectors it is.
 #define CK_LOOP(name) CK_LOOP_OF(name, CK_VECTORS)
 #define CK_LOOP_OF(name, vectors) CK_LOOP_JOIN(name, vectors)

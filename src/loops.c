@@ -2,23 +2,15 @@
 
 #include <stddef.h>
 
-ck_ExplicitRow ck_explicit_row_plain, ck_explicit_row_v3, ck_explicit_row_v4;
-ck_ProjectionWave ck_projection_wave_plain, ck_projection_wave_v3, ck_projection_wave_v4;
-ck_Peak ck_peak_plain, ck_peak_v3, ck_peak_v4;
-
-#ifdef __FP_FAST_FMA
-#define PLAIN_FUSES true
-#else
-#define PLAIN_FUSES false
-#endif
+extern const ck_Loops ck_loops_plain, ck_loops_v3, ck_loops_v4;
 
 // Each processor that has one kind has those below it.
-static const ck_Loops all[] = {
+static const ck_Loops *const all[] = {
 #ifdef CK_HAS_X86_VECTORS
-    {"x86-64-v4", 8, true, ck_explicit_row_v4, ck_projection_wave_v4, ck_peak_v4},
-    {"x86-64-v3", 4, true, ck_explicit_row_v3, ck_projection_wave_v3, ck_peak_v3},
+    &ck_loops_v4,
+    &ck_loops_v3,
 #endif
-    {"plain", 2, PLAIN_FUSES, ck_explicit_row_plain, ck_projection_wave_plain, ck_peak_plain},
+    &ck_loops_plain,
 };
 
 const ck_Loops *ck_loops_at(int index) {
@@ -26,7 +18,7 @@ const ck_Loops *ck_loops_at(int index) {
     if (!__builtin_cpu_supports("x86-64-v4")) index++;
     if (!__builtin_cpu_supports("x86-64-v3")) index++;
 #endif
-    return index < (int)(sizeof all / sizeof *all) ? &all[index] : NULL;
+    return index < (int)(sizeof all / sizeof *all) ? all[index] : NULL;
 }
 
 const ck_Loops *ck_loops_for(uint32_t lanes) {
