@@ -146,7 +146,7 @@ static void add_all(const Work *work, ck_Csv *csv) {
     for (int i = 0; i < check->case_count; i++)
         if (!has_row(&work->baseline, check->cases[i].comparison->model.name, check->cases[i].engine->name))
             added += add_case(work, i, false, csv);
-    printf("%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s and stay as they were\n",
+    printf("%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or end early and stay\n",
            BASELINE_DIRECTORY, BASELINE_NAME, added, check->case_count - added - kept, SECONDS, kept, 2 * SECONDS);
 }
 

@@ -139,6 +139,36 @@ static void test_full_disk(void **state) {
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
 }
 
+static char *update_baseline(const char *options) {
+    char command[600];
+    snprintf(command, sizeof command,
+             "cd %s && %s check --update %s/oscillator.yaml --engine native-verlet %s >/dev/null 2>&1",
+             fixture_directory, PROGRAM, SCENE_DIRECTORY, options);
+    int status = system(command);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    return fixture_read("tests/baseline/metrics.csv");
+}
+
+// Only what was measured moves, in its place; a run that does not come to its end stays as it was.
+static void test_update_keeps(void **state) {
+    (void)state;
+    static const char header[] = "scene,engine,status,metric,value,band\n",
+                      old[] = "oscillator,native-verlet,ok,sag,1,1\n", others[] = "free_fall,null,ok,sag,1,1\n";
+    char command[500], wanted[300];
+    snprintf(wanted, sizeof wanted, "%s%s%s", header, old, others);
+    snprintf(command, sizeof command, "mkdir -p %s/tests/baseline && printf '%s' > %s/tests/baseline/metrics.csv",
+             fixture_directory, wanted, fixture_directory);
+    assert_int_equal(system(command), 0);
+    char *cut_off = update_baseline("--set native-verlet.substeps=1000000 --time-limit 0.1"),
+         *whole = update_baseline("");
+    assert_string_equal(cut_off, wanted);
+    assert_null(strstr(whole, old));
+    assert_non_null(strstr(whole, "oscillator,native-verlet,ok,period,0.6"));
+    assert_string_equal(whole + strlen(whole) - strlen(others), others);
+    free(cut_off);
+    free(whole);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
@@ -148,6 +178,7 @@ int main(void) {
         cmocka_unit_test(test_comparison_repeats),
         cmocka_unit_test(test_interrupt),
         cmocka_unit_test(test_full_disk),
+        cmocka_unit_test(test_update_keeps),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
