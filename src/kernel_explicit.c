@@ -5,23 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  v ← v + a·dt/2: the start of a call's first substep.
-static void advance_row(ck_ExplicitCloth *cloth, int row) {
-    const double dt = cloth->dt, half = 0.5 * dt;
-    const long end = ck_rows_place(&cloth->rows, row + 1, 0).tile;
-    for (long i = ck_rows_place(&cloth->rows, row, 0).tile; i < end; i++) {
-        const double a = cloth->a[i], kicked = cloth->v[i] + half * a;
-        cloth->x[i] += dt * kicked;
-        cloth->predicted[i] = kicked + half * a;
-        cloth->v[i] = kicked;
-    }
-}
-
 // The first row has no springs from above; nor has the second, of those that bend.
 static void run_wave(void *state, long block, int row) {
     ck_ExplicitCloth *cloth = state;
     if (block == 0) {
-        advance_row(cloth, row);
+        cloth->loops->explicit_start(cloth, row);
         return;
     }
     if (row == 0) memset(cloth->a, 0, 3 * sizeof(double) * (size_t)cloth->rows.stride);

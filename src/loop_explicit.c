@@ -157,6 +157,19 @@ CK_INLINE void pass(const struct ck_ExplicitCloth *cloth, int row, bool advances
     }
 }
 
+// x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  v ← v + a·dt/2
+ck_ExplicitStart CK_LOOP(ck_explicit_start);
+void CK_LOOP(ck_explicit_start)(const struct ck_ExplicitCloth *cloth, int row) {
+    const ck_Lanes dt = ck_lanes_all(cloth->dt), half = ck_lanes_all(0.5 * cloth->dt);
+    const long end = ck_rows_place(&cloth->rows, row + 1, 0).tile;
+    for (long i = ck_rows_place(&cloth->rows, row, 0).tile; i < end; i += CK_LANES) {
+        const ck_Lanes a = ck_lanes_load(cloth->a + i), v = ck_lanes_plus(ck_lanes_load(cloth->v + i), half, a);
+        ck_lanes_store(cloth->x + i, ck_lanes_plus(ck_lanes_load(cloth->x + i), dt, v));
+        ck_lanes_store(cloth->predicted + i, ck_lanes_plus(v, half, a));
+        ck_lanes_store(cloth->v + i, v);
+    }
+}
+
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
 void CK_LOOP(ck_explicit_row)(const struct ck_ExplicitCloth *shared, int row, bool advances) {

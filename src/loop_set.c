@@ -2,10 +2,18 @@
 #include "lanes.h"
 #include "loops.h"
 
+ck_ExplicitStart CK_LOOP(ck_explicit_start);
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
 ck_ProjectionWave CK_LOOP(ck_projection_wave);
 ck_Peak CK_LOOP(ck_peak);
 
 extern const ck_Loops CK_LOOP(ck_loops);
 const ck_Loops CK_LOOP(ck_loops) = {
-    CK_VECTORS_NAME, CK_LANES, CK_FUSES, CK_LOOP(ck_explicit_row), CK_LOOP(ck_projection_wave), CK_LOOP(ck_peak)};
+    .vectors = CK_VECTORS_NAME,
+    .lanes = CK_LANES,
+    .fuses = CK_FUSES,
+    .explicit_start = CK_LOOP(ck_explicit_start),
+    .explicit_row = CK_LOOP(ck_explicit_row),
+    .projection_wave = CK_LOOP(ck_projection_wave),
+    .peak = CK_LOOP(ck_peak),
+};

@@ -12,6 +12,8 @@ struct ck_ExplicitCloth;
 struct ck_ProjectedCloth;
 struct ck_Wave;
 
+// A row's way to the first substep's forces; see loop_explicit.h.
+typedef void ck_ExplicitStart(const struct ck_ExplicitCloth *cloth, int row);
 // One row's part of a substep; see loop_explicit.h.
 typedef void ck_ExplicitRow(const struct ck_ExplicitCloth *cloth, int row, bool advances);
 // A wave of interleaved sweeps; see loop_projection.h.
@@ -23,6 +25,7 @@ typedef struct ck_Loops {
     const char *vectors; // what compilers call the processors that have them
     int lanes;           // doubles of one
     bool fuses;
+    ck_ExplicitStart *explicit_start;
     ck_ExplicitRow *explicit_row;
     ck_ProjectionWave *projection_wave;
     ck_Peak *peak;

@@ -3,6 +3,7 @@
 #include "kernel_projection.h"
 #include "vector.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,7 +158,13 @@ void ck_native_ledger_springs(ck_Ledger *ledger, const ck_Model *model, const ch
 }
 
 bool ck_native_is_finite(const ck_Native *native) {
-    double sum = 0;
-    for (int i = 0; i < 3 * native->model->particle_count; i++) sum += native->position[i] * 0;
-    return sum == 0; // 0·x is 0 for every finite x, and not a number for the others
+    const uint64_t exponent = 0x7ff0000000000000, one = 0x0010000000000000;
+    uint64_t over = 0;
+    // of what is no finite number the exponent is all ones: one more reaches the sign
+    for (int i = 0; i < 3 * native->model->particle_count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &native->position[i], sizeof bits);
+        over |= (bits & exponent) + one;
+    }
+    return !(over >> 63);
 }
