@@ -135,7 +135,8 @@ static void add_all(const Work *work, ck_Csv *csv) {
     int added = 0, kept = 0;
     for (int i = 0; i < work->baseline.count; i++) {
         const int index = find_case(check, &rows[i]);
-        bool is_first = i == 0 || find_case(check, &rows[i - 1]) != index;
+        bool is_first = true;
+        for (int k = 0; k < i && is_first && index >= 0; k++) is_first = !is_of(&rows[k], &check->cases[index]);
         if (index < 0)
             ck_baseline_add(&rows[i], csv);
         else if (is_first && add_case(work, index, true, csv))
@@ -146,7 +147,7 @@ static void add_all(const Work *work, ck_Csv *csv) {
     for (int i = 0; i < check->case_count; i++)
         if (!has_row(&work->baseline, check->cases[i].comparison->model.name, check->cases[i].engine->name))
             added += add_case(work, i, false, csv);
-    printf("%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or end early and stay\n",
+    printf("%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or time out and stay\n",
            BASELINE_DIRECTORY, BASELINE_NAME, added, check->case_count - added - kept, SECONDS, kept, 2 * SECONDS);
 }
 

@@ -3,6 +3,7 @@
 #include "loop_projection.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,6 +68,15 @@ static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, con
         if (springs->rest[kind] > 0) set_compliant(&cloth->compliant[kind], springs, kind, rule, 1 / cloth->mass);
 }
 
+// With the last bit set no product with it is 10 exactly, and what a fused one leaves of 10 is not 0: see lanes.h.
+static double odd(double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits |= 1;
+    memcpy(&value, &bits, sizeof bits);
+    return value;
+}
+
 static void fill_stripes(ck_ProjectedCloth *cloth, ck_Direction direction) {
     const ck_SpringKind kind = direction == CK_IS_ACROSS ? CK_SHEAR : CK_STRUCTURAL;
     const double rest = cloth->rest[kind], square = rest * rest;
@@ -80,7 +90,7 @@ static void fill_stripes(ck_ProjectedCloth *cloth, ck_Direction direction) {
         stripe->share_rest[lane] = is_there ? share * (are_bars ? square : rest) : 0;
         if (are_bars) {
             stripe->quotient[lane] = is_there ? 10 : 5;
-            stripe->steepness[lane] = is_there ? 5 / square : 0;
+            stripe->steepness[lane] = is_there ? odd(5 / square) : 0;
         } else {
             stripe->softness[lane] = stripe->share[lane] * cloth->compliant[kind].compliance * cloth->mass;
             stripe->viscosity[lane] = stripe->share[lane] * cloth->compliant[kind].gamma;

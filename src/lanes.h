@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-// Passed between functions that are all inlined, so that the calling convention of vectors does not matter.
+// Passed between functions of one file, so that the calling convention of vectors does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 // Wider than the processor's, the compiler would take vectors apart through memory, ten times slower than narrow ones.
@@ -59,9 +59,9 @@ CK_INLINE ck_Lanes ck_lanes_all(double value) {
 
 // What C has no words for. c + a·b and c − a·b are rounded once where the processor can: named outright and not left to
 // the compiler (-ffp-contract=off), whose choice depends on what else uses a product. So all that fuse give the same
-// bits. A mask is what a comparison leaves for a choice. Moderate is what lies from 2 to less than 8, or 0: the sign
-// and all but the ends of the exponent have no bit there, which one look at the bits shows. Where each lane goes to the
-// next, the first comes from the vector before.
+// bits. A mask is what a comparison leaves for a choice. Moderate is what lies from 2 to less than 8: the sign and
+// all but the ends of the exponent have no bit there, which one look at the bits shows. It would show the same of 0.
+// Where each lane goes to the next, the first comes from the vector before.
 #define CK_NOT_MODERATE ((int64_t)0xbfe0000000000000)
 #if CK_LANES == 8
 typedef __mmask8 ck_LaneMask;
@@ -147,12 +147,12 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
 }
 
 CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
-    return ((ck_LaneBits)a & CK_NOT_MODERATE) == 0;
+    return (a >= 2) & (a < 8);
 }
 
 CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
-    const ck_LaneBits bits = (ck_LaneBits)a;
-    return ((bits[0] | bits[1]) & CK_NOT_MODERATE) == 0;
+    const ck_LaneMask mask = ck_lanes_moderate(a);
+    return (mask[0] & mask[1]) != 0;
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {

@@ -91,8 +91,8 @@ CK_INLINE void pull_vector(const struct ck_ExplicitCloth *cloth, Pulls *pulls, i
     pulls->below_right = ck_lanes3_subtract_scaled(pulls->below_right, scale[DOWN_RIGHT], d[DOWN_RIGHT]);
 }
 
-// a ← w·(force − drag·v*). With another substep to come v ← v + a·dt, x ← x + v·dt, v* = v + a·dt/2: its start, too;
-// else v ← v + a·dt/2.
+// a ← w·(force − drag·m·v*), the weight in the force. With another substep to come v ← v + a·dt, x ← x + v·dt, v* = v +
+// a·dt/2: its start, too; else v ← v + a·dt/2.
 CK_INLINE void finish(const struct ck_ExplicitCloth *cloth, ck_Place at, ck_Lanes3 force, bool advances,
                       const int terms) {
     const double dt = cloth->dt;

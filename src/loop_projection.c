@@ -82,11 +82,11 @@ static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth
                                                   bool held) {
     const Bars bars = bars_of(cloth, &ends, &springs);
     const double square = cloth->rest[ends.kind] * cloth->rest[ends.kind];
-    ck_LaneMask turned = ck_lanes_less(bars.along, ck_lanes_all(0.4 * square));
-    ck_Lanes along = ck_lanes_choose(turned, bars.squared, bars.along);
+    ck_LaneMask straight = ck_lanes_less(bars.quotient, ck_lanes_all(8));
+    ck_Lanes along = ck_lanes_choose(straight, bars.along, bars.squared);
     ck_Lanes scale = ck_lanes_choose(ck_lanes_moderate(bars.quotient), bars.share * bars.quotient,
                                      bars.share * (5 * square) / (along + TINY));
-    move_bars(cloth, &ends, scale, ck_lanes3_choose(turned, bars.now, bars.start), held ? HELD : 0);
+    move_bars(cloth, &ends, scale, ck_lanes3_choose(straight, bars.start, bars.now), held ? HELD : 0);
 }
 
 // A division takes as long as all the rest. So 1/(d·d_start) is (2 − d·d_start/L²)/L², a Newton step from 1/L², where

@@ -24,8 +24,8 @@ static void sweep(ck_Native *native) {
         ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
         double square = bar->rest * bar->rest, part = ck_dot(now, old) / square;
         // a bar that turned by more than some 66° in one substep is projected along itself instead
-        if (part < 0.4) memcpy(old, now, sizeof old);
-        double quotient = part >= 0.4 && part <= 1.6 ? (2 - part) / square : 1 / ck_dot(now, old);
+        if (part <= 0.4) memcpy(old, now, sizeof old);
+        double quotient = part > 0.4 && part <= 1.6 ? (2 - part) / square : 1 / ck_dot(now, old);
         if (!isfinite(quotient)) continue;
         double scale = 0.5 * native->used.relaxation * (ck_dot(now, now) - square) * quotient / (weight_a + weight_b);
         ck_add_scaled(a, weight_a * scale, old);

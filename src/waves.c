@@ -8,9 +8,9 @@
 #include <stdlib.h>
 
 // Looks at another thread's progress before this one gives way, some 10 µs.
-#define LOOKS 2000
+#define LOOKS 20000
 // Looks for a next job before a thread sleeps, some 100 µs: to wake it takes as long as a frame of a small cloth.
-#define IDLE_LOOKS 20000
+#define IDLE_LOOKS 200000
 
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
@@ -31,7 +31,7 @@ struct ck_Waves {
 };
 
 static void wait_for(Worker *worker, long done) {
-    for (int looks = 0; atomic_load_explicit(&worker->done, memory_order_acquire) < done; looks++)
+    for (long looks = 0; atomic_load_explicit(&worker->done, memory_order_acquire) < done; looks++)
         if (looks >= LOOKS) sched_yield();
 }
 
@@ -64,7 +64,8 @@ static void call(Worker *worker) {
 static void wait_for_call(Worker *worker) {
     int idle = IDLE;
     for (int looks = 0; looks < IDLE_LOOKS && atomic_load(&worker->call) != CALLED; looks++) continue;
-    if (atomic_compare_exchange_strong(&worker->call, &idle, ASLEEP)) sem_wait(&worker->wake);
+    if (atomic_compare_exchange_strong(&worker->call, &idle, ASLEEP))
+        while (sem_wait(&worker->wake)) continue; // a signal may end it
     atomic_store(&worker->call, IDLE);
 }
 
@@ -114,7 +115,7 @@ void ck_waves_destroy(ck_Waves *waves) {
 }
 
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
-    int parts = waves ? work->waves / (2 * work->reach) : 1;
+    int parts = waves && work->blocks > 0 ? work->waves / (2 * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
     if (parts <= 1) {
         for (long block = 0; block < work->blocks; block++)
