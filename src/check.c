@@ -11,6 +11,8 @@
 #include <string.h>
 
 #define NUDGE 1e-12
+// Starts that are nudged: one alone may leave a chaotic run's metric by chance where it was.
+#define NUDGES 3
 
 // Where a study's row holds what; there is room for as many metrics.
 #define MOST_METRICS ((CK_JOURNAL_VALUES - 1) / 2)
@@ -69,13 +71,13 @@ static ck_Status measure(const ck_Check *check, const ck_CheckCase *one, const c
 }
 
 // The same from a start that is off by what stands for rounding.
-static ck_Status measure_nudged(const ck_Check *check, const ck_CheckCase *one, ck_Measurement *measurement,
-                                ck_Error *error) {
+static ck_Status measure_nudged(const ck_Check *check, const ck_CheckCase *one, uint64_t seed,
+                                ck_Measurement *measurement, ck_Error *error) {
     ck_Model model = one->comparison->model;
     size_t count = 3 * (size_t)model.particle_count;
     double *position = malloc(count * sizeof *position);
     if (!position) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    ck_Random random = ck_random_seed(3);
+    ck_Random random = ck_random_seed(seed);
     for (size_t i = 0; i < count; i++) {
         double off = NUDGE * model.size * (2 * ck_random_unit(&random) - 1);
         position[i] = model.position[i] + (model.pinned[i / 3] ? 0 : off);
@@ -98,9 +100,13 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     row->values[CPU] = now.cpu;
     for (int i = 0; i < ck_metric_count(); i++) row->values[VALUES + i] = now.values[i];
     if (!check->is_update || isnan(now.cpu)) return CK_OK;
-    status = measure_nudged(check, one, &nudged, error);
-    for (int i = 0; i < ck_metric_count() && !status; i++)
-        row->values[BANDS + i] = ck_check_band(now.values[i], nudged.values[i]);
+    for (int nudge = 0; nudge < NUDGES && !status; nudge++) {
+        status = measure_nudged(check, one, 3 + (uint64_t)nudge, &nudged, error);
+        for (int i = 0; i < ck_metric_count() && !status; i++) {
+            double *widest = &row->values[BANDS + i], band = ck_check_band(now.values[i], nudged.values[i]);
+            if (nudge == 0 || isnan(band) || band > *widest) *widest = band;
+        }
+    }
     return status;
 }
 

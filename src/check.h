@@ -43,7 +43,8 @@ typedef struct ck_Check {
 ck_Study ck_check_study(const ck_Check *check);
 
 // How far a measured value may be from the baseline's. nudged is the same run's from a start that is off by 1e-12 of
-// the size: what rounding may come to on another machine, of which ten times is allowed, and 1e-10 of the value.
+// the size, the farthest of three: what rounding may come to on another machine, of which ten times is allowed, and
+// 1e-10 of the value.
 double ck_check_band(double value, double nudged);
 
 typedef struct ck_Deviation {

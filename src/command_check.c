@@ -190,8 +190,8 @@ int ck_command_check(int argc, char **argv) {
         if (!strcmp(argv[i], "--help")) {
             printf("clothcheck check [SCENE...] [options]\n\nMeasures what " BASELINE_DIRECTORY "/" BASELINE_NAME
                    " holds again and prints what is beyond its band, the worst first;\nwrites check.xml (JUnit). Exit "
-                   "status 1 where there is any. A band is ten times what a nudge of the start by\n1e-12 of the size "
-                   "changes: what rounding may come to on another machine.\n\n");
+                   "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size "
+                   "change at most: what rounding may come to on another machine.\n\n");
             ck_arguments_help(CK_TAKES_JOBS | CK_TAKES_UPDATE);
             return CK_EXIT_OK;
         }
