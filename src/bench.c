@@ -30,8 +30,8 @@ typedef struct Body {
 static const Body bodies[] = {{"cloth", 20, 20}, {"cloth", 64, 64}, {"cloth", 256, 256}, {"rope", 1000, 1}};
 
 // Operations of a row kernel on a regular cloth with shear, as a processor's arithmetic units issue them for a lane:
-// products, sums, both fused, shifts, comparisons, choices, and a division. What marks springs that are there counts
-// with the particle.
+// products, sums, both fused, shifts and looks at bits. What marks springs that are there counts with the particle;
+// bars are marked by their constants.
 typedef struct Work {
     double spring, particle;
 } Work;

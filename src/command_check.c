@@ -119,7 +119,8 @@ static int find_case(const ck_Check *check, const ck_BaselineRow *row) {
     return -1;
 }
 
-// Adds a case as it is now. A busy machine drops no run that was quick enough before: that stays as it was.
+// Adds a case as it is now; false where it took too long. A busy machine drops no run that was quick enough before:
+// that stays as it was.
 static bool add_case(const Work *work, int index, bool is_known, ck_Csv *csv) {
     const ck_CheckCase *one = &work->check.cases[index];
     if (ck_check_add(one, &work->rows[index], is_known ? 2 * SECONDS : SECONDS, csv)) return true;
