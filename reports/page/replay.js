@@ -7,6 +7,15 @@ function drawsInSoftware() {
 	return !info || /swiftshader|llvmpipe|software/i.test(context.getParameter(info.UNMASKED_RENDERER_WEBGL));
 }
 
+// Colours reach to the largest strain of the truth, or where it tells of none of the engine in the middle.
+async function strainRange(scene) {
+	const metrics = await table("metrics.csv");
+	const rows = (metrics ? metrics.rows : []).filter((row) => row.scene === scene && row.metric === "stretch_max");
+	const values = rows.map((row) => Math.abs(number(row.value))).filter((value) => value > 0).sort((a, b) => a - b);
+	const truth = rows.map((row) => number(row.truth)).find((value) => value > 0);
+	return truth || values[Math.floor(values.length / 2)] || 0.01;
+}
+
 class Replay {
 	constructor() {
 		this.canvas = document.getElementById("replay-canvas");
@@ -39,39 +48,34 @@ class Replay {
 		return true;
 	}
 
-	async load(scene) {
+	async load(scene, isWanted) {
 		this.play(false);
 		const box = document.getElementById("replay");
 		box.hidden = !report.scenes.some((one) => one.name === scene && one.has_replay) || !this.start();
 		if (box.hidden) return;
-		this.data = parseReplay(await fileBytes(scene + ".replay"));
-		this.scene = scene;
+		const [bytes, range] = await Promise.all([fileBytes(scene + ".replay"), strainRange(scene)]);
+		if (!isWanted()) return;
+		this.data = parseReplay(bytes);
+		this.range = range;
 		this.world = new THREE.Scene();
 		this.world.add(makeColliders(this.data));
 		this.bodies = new Map([...this.data.paths.keys()].map((name) => [name, makeBody(this.data, name === "truth")]));
 		for (const body of this.bodies.values()) this.world.add(body.group);
 		this.strains = new Float32Array(this.data.particles);
-		this.range = await this.strainRange();
 		this.slider.max = this.data.times[this.data.times.length - 1];
 		this.slider.value = 0;
+		this.showScale();
 		this.listEngines();
 		this.aim();
 		this.redraw();
 	}
 
-	// Colours reach to the largest strain of the truth, or where it tells of none of the engine in the middle.
-	async strainRange() {
-		const metrics = await table("metrics.csv");
-		const rows = (metrics ? metrics.rows : []).filter((row) => row.scene === this.scene && row.metric === "stretch_max");
-		const values = rows.map((row) => Math.abs(number(row.value))).filter((value) => value > 0).sort((a, b) => a - b);
-		const truth = rows.map((row) => number(row.truth)).find((value) => value > 0);
-		const range = truth || values[Math.floor(values.length / 2)] || 0.01;
+	showScale() {
 		const scale = document.getElementById("replay-scale");
 		scale.hidden = !this.data.rests.length;
 		const ramp = element("span");
 		ramp.style.background = "linear-gradient(90deg, rgb(219,214,204), rgb(128,10,26))";
-		scale.replaceChildren("strain of a particle's most stretched spring: 0", ramp, percent(range) + " and more");
-		return range;
+		scale.replaceChildren("strain of a particle's most stretched spring: 0", ramp, percent(this.range) + " and more");
 	}
 
 	listEngines() {

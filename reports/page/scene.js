@@ -38,12 +38,25 @@ async function sceneTables(scene) {
 	return made;
 }
 
+let scenesAsked = 0;
+
+// Whoever asks for another scene while this one is unpacked gets the other one.
 async function showScene(name, replay) {
-	const scene = report.scenes.find((one) => one.name === name);
+	const asked = ++scenesAsked;
+	const isWanted = () => asked === scenesAsked;
+	const section = document.getElementById("scene");
+	section.ariaBusy = "true";
 	document.getElementById("scene-select").value = name;
-	document.getElementById("scene-charts").replaceChildren(await chartBox(scene.charts, name));
-	document.getElementById("scene-tables").replaceChildren(...(await sceneTables(name)));
-	await replay.load(name);
+	const scene = report.scenes.find((one) => one.name === name);
+	try {
+		const [charts, tables] = await Promise.all([chartBox(scene.charts, name), sceneTables(name)]);
+		if (!isWanted()) return;
+		document.getElementById("scene-charts").replaceChildren(charts);
+		document.getElementById("scene-tables").replaceChildren(...tables);
+		await replay.load(name, isWanted);
+	} finally {
+		if (isWanted()) section.ariaBusy = "false";
+	}
 }
 
 async function startGeneral() {
