@@ -5,22 +5,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The first row has no springs from above; nor has the second, of those that bend.
-static void run_wave(void *state, long block, int row) {
-    ck_ExplicitCloth *cloth = state;
-    if (block == 0) {
+// Pass 0 is the start of the first substep, each other one ends a substep and starts the next. The first row has no
+// springs from above; nor has the second, of those that bend.
+static void run_row(ck_ExplicitCloth *cloth, long pass, int row) {
+    if (pass == 0) {
         cloth->loops->explicit_start(cloth, row);
         return;
     }
     if (row == 0) memset(cloth->a, 0, 3 * sizeof(double) * (size_t)cloth->rows.stride);
-    cloth->loops->explicit_row(cloth, row, block < cloth->substeps);
+    cloth->loops->explicit_row(cloth, row, pass < cloth->substeps);
+}
+
+// A row reads those below it as the pass before left them.
+static int reach_of(const ck_ExplicitCloth *cloth) {
+    return cloth->terms & CK_ROW_BENT ? 2 : 1;
+}
+
+static void run_wave(void *state, long block, int wave) {
+    ck_ExplicitCloth *cloth = state;
+    for (int i = 0; i < cloth->depth; i++) {
+        const long pass = block * cloth->depth + i;
+        const int row = wave - reach_of(cloth) * i;
+        if (pass <= cloth->substeps && row >= 0 && row < cloth->rows.rows) run_row(cloth, pass, row);
+    }
 }
 
 void ck_explicit_step(ck_ExplicitCloth *cloth, uint32_t substeps, ck_Waves *waves) {
-    // a row reads those below it as the substep before left them
-    int reach = cloth->terms & CK_ROW_BENT ? 2 : 1;
+    const long passes = substeps + 1L, row = 12 * (long)sizeof(double) * cloth->rows.stride;
+    const int reach = reach_of(cloth);
     cloth->substeps = substeps;
-    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, substeps + 1L, cloth->rows.rows, reach});
+    cloth->depth = ck_waves_depth(waves, passes, reach * row);
+    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (passes + cloth->depth - 1) / cloth->depth,
+                                       cloth->rows.rows + reach * (cloth->depth - 1), reach * cloth->depth});
 }
 
 void ck_explicit_read(const ck_ExplicitCloth *cloth, double *position, double *velocity) {

@@ -3,30 +3,51 @@
 #include "loop_projection.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-// Sweeps that run interleaved: enough independent work for a processor that waits for each sweep's last result.
+// Sweeps that run interleaved: of a narrow cloth enough independent work for a processor that waits for each sweep's
+// last result; threads, which are to meet at few rows, and wide cloths take fewer.
 #define DEPTH 4
+#define DEPTH_WIDE 2
 
 static void run_wave(void *state, long block, int wave) {
     const ck_ProjectedCloth *cloth = state;
-    long first = block * DEPTH, left = cloth->sweeps - first;
-    cloth->loops->projection_wave(cloth, &(ck_Wave){first, left < DEPTH ? (int)left : DEPTH, wave});
+    long first = block * cloth->depth, left = cloth->sweeps - first;
+    cloth->loops->projection_wave(cloth, &(ck_Wave){first, left < cloth->depth ? (int)left : cloth->depth, wave});
+}
+
+static int depth_of(const ck_ProjectedCloth *cloth, const ck_Waves *waves) {
+    if (!ck_rows_are_wide(&cloth->rows)) return waves ? DEPTH_WIDE : DEPTH;
+    const long row = 6 * (long)sizeof(double) * cloth->rows.stride;
+    const int depth = ck_waves_depth(waves, cloth->sweeps, CK_SWEEP_LAG * row);
+    // what stays in the second cache anyway has the rows it is at in the first one with fewer
+    return row * cloth->rows.rows > CK_SECOND_CACHE && depth > DEPTH_WIDE ? depth : DEPTH_WIDE;
 }
 
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     cloth->sweeps = (long)substeps * cloth->rule.iterations;
+    cloth->depth = depth_of(cloth, waves);
     // a block's first sweep reads the row below it as the last sweep of the block before left it
-    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (cloth->sweeps + DEPTH - 1) / DEPTH,
-                                       cloth->rows.rows + CK_SWEEP_LAG * (DEPTH - 1), CK_SWEEP_LAG * (DEPTH - 1) + 2});
+    const int reach = CK_SWEEP_LAG * (cloth->depth - 1) + 2;
+    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (cloth->sweeps + cloth->depth - 1) / cloth->depth,
+                                       cloth->rows.rows + reach - 2, reach});
+}
+
+// m/s of what moved a metre in a substep.
+static double rate_of(const ck_ProjectedCloth *cloth) {
+    return cloth->rule.keep / cloth->rule.dt;
 }
 
 void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
+    const double rate = rate_of(cloth);
     ck_rows_store(&cloth->rows, position, cloth->x);
-    ck_rows_store(&cloth->rows, velocity, cloth->v);
+    ck_rows_store(&cloth->rows, velocity, cloth->start);
     ck_rows_store(&cloth->rows, before, cloth->before);
+    for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i++) {
+        velocity[i] = rate * (position[i] - velocity[i]);
+        before[i] *= rate;
+    }
 }
 
 void ck_projection_destroy(ck_ProjectedCloth *cloth) {
@@ -59,42 +80,30 @@ static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, con
         rule->projection == CK_PROJECT_SPRINGS && (rule->compliance > 0 || isfinite(springs->stiffness[CK_STRUCTURAL]));
     cloth->rule = *rule;
     memcpy(cloth->rest, springs->rest, sizeof cloth->rest);
-    cloth->carry_way = dt * rule->carry;
-    for (int axis = 0; axis < 3; axis++) cloth->push_way[axis] = dt * rule->push[axis];
+    cloth->carried = rule->carry * rule->keep;
+    for (int axis = 0; axis < 3; axis++) cloth->push[axis] = dt * rule->push[axis];
     cloth->terms = rule->projection == CK_PROJECT_BARS ? CK_SWEEP_BARS : 0;
+    cloth->long_scale = 0.25 * rule->relaxation * (CK_LONG_BAR - 1);
     if (is_elastic)
         cloth->terms |= (springs->damping > 0 ? CK_SWEEP_DAMPED : 0) | (rule->iterations > 1 ? CK_SWEEP_REPEATED : 0);
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
         if (springs->rest[kind] > 0) set_compliant(&cloth->compliant[kind], springs, kind, rule, 1 / cloth->mass);
 }
 
-// With the last bit set no product with it is 10 exactly, and what a fused one leaves of 10 is not 0: see lanes.h.
-static double odd(double value) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    bits |= 1;
-    memcpy(&value, &bits, sizeof bits);
-    return value;
-}
-
 static void fill_stripes(ck_ProjectedCloth *cloth, ck_Direction direction) {
     const ck_SpringKind kind = direction == CK_IS_ACROSS ? CK_SHEAR : CK_STRUCTURAL;
     const double rest = cloth->rest[kind], square = rest * rest;
     bool are_bars = cloth->rule.projection == CK_PROJECT_BARS;
-    double share = cloth->rule.relaxation * (are_bars ? 0.05 / square : cloth->compliant[kind].share);
+    double share = cloth->rule.relaxation * (are_bars ? 0.25 / square : cloth->compliant[kind].share);
     for (int column = 0; column < cloth->rows.span * CK_STRIPE; column++) {
         ck_Stripe *stripe = &cloth->stripes[direction][column % cloth->rows.span];
         const int lane = column / cloth->rows.span;
         bool is_there = rest > 0 && column + (direction != CK_IS_DOWN) < cloth->rows.columns;
         stripe->share[lane] = is_there ? share : 0;
         stripe->share_rest[lane] = is_there ? share * (are_bars ? square : rest) : 0;
-        if (are_bars) {
-            stripe->quotient[lane] = is_there ? 10 : 5;
-            stripe->steepness[lane] = is_there ? odd(5 / square) : 0;
-        } else {
-            stripe->softness[lane] = stripe->share[lane] * cloth->compliant[kind].compliance * cloth->mass;
-            stripe->viscosity[lane] = stripe->share[lane] * cloth->compliant[kind].gamma;
-        }
+        if (are_bars) continue;
+        stripe->softness[lane] = stripe->share[lane] * cloth->compliant[kind].compliance * cloth->mass;
+        stripe->viscosity[lane] = stripe->share[lane] * cloth->compliant[kind].gamma;
     }
 }
 
@@ -102,9 +111,8 @@ static void place_arrays(ck_ProjectedCloth *cloth) {
     const size_t size = cloth->rows.size;
     cloth->x = cloth->state;
     cloth->start = cloth->state + 3 * size;
-    cloth->v = cloth->state + 6 * size;
-    cloth->before = cloth->state + 9 * size;
-    cloth->is_free = cloth->state + 12 * size;
+    cloth->before = cloth->state + 6 * size;
+    cloth->is_free = cloth->state + 9 * size;
     for (int direction = 0; direction < CK_DIRECTIONS; direction++)
         cloth->stripes[direction] = (ck_Stripe *)cloth->springs + direction * cloth->rows.span;
     // the colours along a row have the row's vectors between them
@@ -126,6 +134,19 @@ static void mark_free(ck_ProjectedCloth *cloth, const double *inverse_mass) {
     }
 }
 
+// Places as they are, and as velocities say that they were.
+static void start_moving(ck_ProjectedCloth *cloth, const double *position, const double *velocity,
+                         const double *before) {
+    const double rate = rate_of(cloth);
+    ck_rows_load(&cloth->rows, cloth->x, position);
+    ck_rows_load(&cloth->rows, cloth->start, velocity);
+    ck_rows_load(&cloth->rows, cloth->before, before);
+    for (size_t i = 0; i < 3 * cloth->rows.size; i++) {
+        cloth->start[i] = cloth->x[i] - cloth->start[i] / rate;
+        cloth->before[i] /= rate;
+    }
+}
+
 ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Loops *loops, const ck_Model *model,
                                const ck_RowSprings *springs, const ck_ProjectionRule *rule, const double *position,
                                const double *velocity, const double *before, const double *inverse_mass,
@@ -137,7 +158,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Loops *loops, c
     cloth->mass = model->mass[0];
     set_rule(cloth, springs, rule);
     const ck_Rows stripes = {.size = (size_t)cloth->rows.span * sizeof(ck_Stripe) / sizeof(double)};
-    cloth->state = ck_rows_allocate(&cloth->rows, 13);
+    cloth->state = ck_rows_allocate(&cloth->rows, 10);
     cloth->springs = ck_rows_allocate(&stripes, CK_DIRECTIONS);
     cloth->multipliers = cloth->terms & CK_SWEEP_REPEATED ? ck_rows_allocate(&cloth->rows, 4) : NULL;
     cloth->is_held = calloc((size_t)cloth->rows.rows, sizeof *cloth->is_held);
@@ -149,9 +170,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Loops *loops, c
     place_arrays(cloth);
     mark_free(cloth, inverse_mass);
     for (int direction = 0; direction < CK_DIRECTIONS; direction++) fill_stripes(cloth, direction);
-    ck_rows_load(&cloth->rows, cloth->x, position);
-    ck_rows_load(&cloth->rows, cloth->v, velocity);
-    ck_rows_load(&cloth->rows, cloth->before, before);
+    start_moving(cloth, position, velocity, before);
     *out = cloth;
     return CK_OK;
 }

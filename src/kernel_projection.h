@@ -13,6 +13,10 @@
 #include "sweep_order.h"
 #include "waves.h"
 
+// l²/L² of a bar from which on it is long. Shorter ones are corrected with L² in the place of d·d_start, which does not
+// reach as far for a bar that turned, and further for one that is long.
+#define CK_LONG_BAR 1.8
+
 typedef struct ck_ProjectionRule {
     ck_Projection projection;
     double dt;
@@ -29,7 +33,7 @@ typedef struct ck_ProjectedCloth ck_ProjectedCloth;
 bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
 
 // Position, velocity and the velocity a substep earlier, [3*n], are taken over; inverse_mass [n] is 0 where pinned.
-// Memory: 13 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
+// Memory: 10 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
 // ck_projection_destroy.
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Loops *loops, const ck_Model *model,
                                const ck_RowSprings *springs, const ck_ProjectionRule *rule, const double *position,
@@ -37,7 +41,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Loops *loops,
                                ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 
-// As many substeps, without allocation; up to four sweeps run interleaved, a few rows apart, which changes no result.
+// As many substeps, without allocation; sweeps run interleaved, a few rows apart, which changes no result.
 // The same bits however many threads share the waves; on which processors, loops.h says.
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
 

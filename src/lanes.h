@@ -59,10 +59,8 @@ CK_INLINE ck_Lanes ck_lanes_all(double value) {
 
 // What C has no words for. c + a·b and c − a·b are rounded once where the processor can: named outright and not left to
 // the compiler (-ffp-contract=off), whose choice depends on what else uses a product. So all that fuse give the same
-// bits. A mask is what a comparison leaves for a choice. Moderate is what lies from 2 to less than 8: the sign and
-// all but the ends of the exponent have no bit there, which one look at the bits shows. It would show the same of 0.
-// Where each lane goes to the next, the first comes from the vector before.
-#define CK_NOT_MODERATE ((int64_t)0xbfe0000000000000)
+// bits. A mask is what a comparison leaves for a choice. What is no number is beyond any limit. Where each lane goes to
+// the next, the first comes from the vector before.
 #if CK_LANES == 8
 typedef __mmask8 ck_LaneMask;
 
@@ -82,12 +80,8 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
     return (ck_Lanes)_mm512_mask_blend_pd(mask, (__m512d)no, (__m512d)yes);
 }
 
-CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
-    return _mm512_testn_epi64_mask((__m512i)a, _mm512_set1_epi64(CK_NOT_MODERATE));
-}
-
-CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
-    return _mm512_test_epi64_mask((__m512i)a, _mm512_set1_epi64(CK_NOT_MODERATE)) == 0;
+CK_INLINE bool ck_lanes_any_beyond(ck_Lanes a, double limit) {
+    return _mm512_cmp_pd_mask((__m512d)a, _mm512_set1_pd(limit), _CMP_NLE_UQ) != 0;
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
@@ -112,12 +106,8 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
     return (ck_Lanes)_mm256_blendv_pd((__m256d)no, (__m256d)yes, mask);
 }
 
-CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
-    return (__m256d)(((ck_LaneBits)a & CK_NOT_MODERATE) == 0);
-}
-
-CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
-    return _mm256_testz_si256((__m256i)a, _mm256_set1_epi64x(CK_NOT_MODERATE));
+CK_INLINE bool ck_lanes_any_beyond(ck_Lanes a, double limit) {
+    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, _mm256_set1_pd(limit), _CMP_NLE_UQ)) != 0;
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
@@ -146,13 +136,8 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
     return (ck_Lanes)(((ck_LaneBits)yes & mask) | ((ck_LaneBits)no & ~mask));
 }
 
-CK_INLINE ck_LaneMask ck_lanes_moderate(ck_Lanes a) {
-    return (a >= 2) & (a < 8);
-}
-
-CK_INLINE bool ck_lanes_all_moderate(ck_Lanes a) {
-    const ck_LaneMask mask = ck_lanes_moderate(a);
-    return (mask[0] & mask[1]) != 0;
+CK_INLINE bool ck_lanes_any_beyond(ck_Lanes a, double limit) {
+    return !(a[0] <= limit && a[1] <= limit);
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {

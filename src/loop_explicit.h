@@ -13,6 +13,7 @@ struct ck_ExplicitCloth {
     double dt, resistance, weight[3]; // s; N·s/m and N on each particle, of drag and of what pulls on all
     int terms;
     uint32_t substeps; // of this call
+    int depth;         // passes over the rows that run interleaved
     // tiles; v, between substeps of a call, is half a substep ahead
     double *x, *v, *predicted;
     double *a;    // acceleration at the end of a call, else the springs' forces from above so far

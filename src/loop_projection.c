@@ -4,11 +4,6 @@
 
 #include <string.h>
 
-// Vectors of a row beyond which it alone has work enough, and several would not stay in the first cache.
-#define WIDE 10
-// What stands for no length at all, m²: the square of any rest length over it is a number.
-#define TINY 1e-200
-
 enum { DAMPED = CK_SWEEP_DAMPED, REPEATED = CK_SWEEP_REPEATED, BARS = CK_SWEEP_BARS, HELD = CK_SWEEP_HELD };
 
 // A vector of springs.
@@ -18,14 +13,13 @@ typedef struct Ends {
     double *multiplier;
 } Ends;
 
-// What a stripe says of them: the first two of both, the others of bars or springs.
+// What a stripe says of them.
 typedef struct Springs {
-    ck_Lanes share, share_rest, quotient, steepness, softness, viscosity;
+    ck_Lanes share, share_rest, softness, viscosity;
 } Springs;
 
 CK_INLINE Springs springs_of(const ck_Stripe *stripe, int lane) {
-    return (Springs){ck_lanes_load(stripe->share + lane),    ck_lanes_load(stripe->share_rest + lane),
-                     ck_lanes_load(stripe->quotient + lane), ck_lanes_load(stripe->steepness + lane),
+    return (Springs){ck_lanes_load(stripe->share + lane), ck_lanes_load(stripe->share_rest + lane),
                      ck_lanes_load(stripe->softness + lane), ck_lanes_load(stripe->viscosity + lane)};
 }
 
@@ -53,50 +47,37 @@ CK_INLINE ck_Lanes3 span_of(const double *tiles, const Ends *ends) {
     return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
 }
 
-// By s·(l² − L²)/(4·d·d_start) along d_start, where masses cancel; s is the relaxation.
-typedef struct Bars {
-    ck_Lanes3 now, start;
-    ck_Lanes along, squared; // d·d_start, d²
-    ck_Lanes share;          // s·(l²/L² − 1)/20
-    ck_Lanes quotient;       // 5·(2 − d·d_start/L²)
-} Bars;
-
-CK_INLINE Bars bars_of(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs) {
-    Bars bars = {.now = span_of(cloth->x, ends), .start = span_of(cloth->start, ends)};
-    bars.along = ck_lanes3_dot(bars.now, bars.start);
-    bars.squared = ck_lanes3_dot(bars.now, bars.now);
-    bars.share = ck_lanes_plus(-springs->share_rest, springs->share, bars.squared);
-    bars.quotient = ck_lanes_minus(springs->quotient, springs->steepness, bars.along);
-    return bars;
-}
-
 CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way,
                          const int terms) {
     if (terms & HELD) scale += scale - scale * both_alike(cloth, ends);
     move(cloth, ends, scale, way, terms);
 }
 
-// Bars of which one is far from its length, or turned: one that turned by more than 66° is projected along itself.
+// Bars of which one is long: that one by s·(l² − L²)/(4·d·d_start), or along itself where it turned by more than 66°.
 // Seldom, and not in line, so that the others' registers are their own.
-static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs,
-                                                  bool held) {
-    const Bars bars = bars_of(cloth, &ends, &springs);
-    const double square = cloth->rest[ends.kind] * cloth->rest[ends.kind];
-    ck_LaneMask straight = ck_lanes_less(bars.quotient, ck_lanes_all(8));
-    ck_Lanes along = ck_lanes_choose(straight, bars.along, bars.squared);
-    ck_Lanes scale = ck_lanes_choose(ck_lanes_moderate(bars.quotient), bars.share * bars.quotient,
-                                     bars.share * (5 * square) / (along + TINY));
-    move_bars(cloth, &ends, scale, ck_lanes3_choose(straight, bars.start, bars.now), held ? HELD : 0);
+static __attribute__((noinline)) void project_long(const ck_ProjectedCloth *cloth, Ends ends, ck_Lanes scale,
+                                                   bool held) {
+    const ck_Lanes3 now = span_of(cloth->x, &ends), start = span_of(cloth->start, &ends);
+    const ck_Lanes square = ck_lanes_all(cloth->rest[ends.kind] * cloth->rest[ends.kind]);
+    const ck_Lanes along = ck_lanes3_dot(now, start), squared = ck_lanes3_dot(now, now);
+    const ck_LaneMask is_long = ck_lanes_less(ck_lanes_all(cloth->long_scale), scale);
+    const ck_LaneMask has_turned = ck_lanes_less(along, 0.4 * square);
+    const ck_Lanes length = ck_lanes_choose(has_turned, squared, along);
+    const ck_Lanes3 way = ck_lanes3_choose(has_turned, now, start);
+    move_bars(cloth, &ends, ck_lanes_choose(is_long, scale * square / length, scale),
+              ck_lanes3_choose(is_long, way, start), held ? HELD : 0);
 }
 
-// A division takes as long as all the rest. So 1/(d·d_start) is (2 − d·d_start/L²)/L², a Newton step from 1/L², where
-// that is 0.4/L² to 1.6/L²: off by the square of what the bar is off by, and never too much.
+// Along d_start by s·(l² − L²)/(4·L²), where masses cancel and s is the relaxation: L² in the place of d·d_start, for a
+// division takes as long as all the rest, and the next sweep mends what that leaves. A bar longer than it may be so
+// comes by itself.
 CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, const int terms) {
-    const Bars bars = bars_of(cloth, ends, springs);
-    if (__builtin_expect(!ck_lanes_all_moderate(bars.quotient), 0))
-        project_far(cloth, *ends, *springs, (terms & HELD) != 0);
+    const ck_Lanes3 now = span_of(cloth->x, ends);
+    const ck_Lanes scale = ck_lanes_plus(-springs->share_rest, springs->share, ck_lanes3_dot(now, now));
+    if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0))
+        project_long(cloth, *ends, scale, (terms & HELD) != 0);
     else
-        move_bars(cloth, ends, bars.share * bars.quotient, bars.start, terms);
+        move_bars(cloth, ends, scale, span_of(cloth->start, ends), terms);
 }
 
 // By the share of (1 − L'/l), along the spring, that is its own: L' is the length at which it would rest.
@@ -206,13 +187,14 @@ CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Wave *wav
     }
 }
 
-// x_start ← x;  x ← x + (carry·v + push)·dt
+// x ← x + carried·(x − x_start) + push;  x_start ← x as it was. Velocities are what positions have moved by.
 CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
-    ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile), v = ck_lanes3_load(cloth->v + at.tile);
-    ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push_way), ck_lanes_all(cloth->carry_way), v);
+    const ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile);
+    const ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->start + at.tile));
+    const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved);
     ck_lanes3_store(cloth->start + at.tile, x);
     ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(x, ck_lanes_load(cloth->is_free + at.single), way));
-    if (is_last) ck_lanes3_store(cloth->before + at.tile, v);
+    if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
 }
 
 CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
@@ -226,17 +208,8 @@ CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last
         memset(cloth->multiplier[colour] + row * cloth->rows.stride, 0, bytes);
 }
 
-// v ← keep·(x − x_start)/dt
-CK_INLINE void finish_row(const ck_ProjectedCloth *cloth, int row) {
-    const double rate = cloth->rule.keep / cloth->rule.dt;
-    const long at = ck_rows_place(&cloth->rows, row, 0).tile, end = ck_rows_place(&cloth->rows, row + 1, 0).tile;
-    for (long i = at; i < end; i += CK_LANES)
-        ck_lanes_store(cloth->v + i, rate * (ck_lanes_load(cloth->x + i) - ck_lanes_load(cloth->start + i)));
-}
-
 // Colour by colour, so that each sweep in flight has the others' work to wait with, and each in a loop of its own,
-// which takes a seventh less time on a narrow cloth. A substep's first sweep finds the row below predicted; its last
-// leaves the row above done.
+// which takes a seventh less time on a narrow cloth. A substep's first sweep finds the row below predicted.
 CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Wave *wave, const int terms) {
     for (int i = 0; i < wave->sweeps; i++) {
         long sweep = wave->first_sweep + i;
@@ -246,18 +219,12 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Wave *wave, 
         if (row == 0) predict_row(cloth, 0, is_last);
         if (row + 1 < cloth->rows.rows) predict_row(cloth, row + 1, is_last);
     }
-    const int together = cloth->rows.span > WIDE ? 1 : wave->sweeps;
+    const int together = ck_rows_are_wide(&cloth->rows) ? 1 : wave->sweeps;
     for (int first = 0; first < wave->sweeps; first += together)
 #pragma GCC unroll 6
         for (int turn = 0; turn < COLOURS; turn++)
             project_colour(cloth, wave, first, first + together,
                            (terms & BARS ? order_of_bars : order_of_springs)[turn], terms);
-    for (int i = 0; i < wave->sweeps; i++) {
-        int row = wave->wave - CK_SWEEP_LAG * i;
-        if ((wave->first_sweep + i + 1) % cloth->rule.iterations || row < 0 || row >= cloth->rows.rows) continue;
-        if (row > 0) finish_row(cloth, row - 1);
-        if (row + 1 == cloth->rows.rows) finish_row(cloth, row);
-    }
 }
 
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.

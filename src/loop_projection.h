@@ -29,16 +29,10 @@ typedef struct ck_Compliant {
 
 // Eight springs of one kind, a lane each; 0 where there is none: that moves nothing.
 typedef struct ck_Stripe {
-    double share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(20·L²)
+    double share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(4·L²)
     double share_rest[CK_STRIPE]; // that times L, of bars times L²
-    union {
-        double quotient[CK_STRIPE]; // of bars 10; 5 where there is none
-        double softness[CK_STRIPE]; // of springs share·α̃·m
-    };
-    union {
-        double steepness[CK_STRIPE]; // of bars 5/L²
-        double viscosity[CK_STRIPE]; // of springs share·γ̃
-    };
+    double softness[CK_STRIPE];   // of springs share·α̃·m
+    double viscosity[CK_STRIPE];  // of springs share·γ̃
 } ck_Stripe;
 
 // A row's springs: those down, along it and across. All rows are alike.
@@ -48,13 +42,16 @@ struct ck_ProjectedCloth {
     const ck_Loops *loops;
     ck_Rows rows;
     ck_ProjectionRule rule;
-    double carry_way, push_way[3];      // of the rule, times dt
+    double carried, push[3];            // what a substep moves of what the last one moved, and m on top of that
     double mass, rest[CK_SPRING_KINDS]; // kg, m
     ck_Compliant compliant[CK_SPRING_KINDS];
     ck_Stripe *stripes[CK_DIRECTIONS]; // [span]
+    double long_scale;                 // of bars: the correction beyond which they are long
     int terms;
-    long sweeps;                    // of this call
-    double *x, *start, *v, *before; // tiles
+    long sweeps;       // of this call
+    int depth;         // of which so many run interleaved
+    double *x, *start; // tiles, m; start: before the last substep
+    double *before;    // m moved in the substep before the last one
     double *is_free;
     double *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
     bool *is_held;                       // [rows] a pin in the row or the one below

@@ -1,5 +1,6 @@
 // Störmer–Verlet with rigid bars, relaxed Gauss–Seidel and mass-weighted.
 #include "engine_list.h"
+#include "kernel_projection.h"
 #include "native_leapfrog.h"
 #include "native_projection.h"
 #include "stability.h"
@@ -10,7 +11,7 @@
 
 // One Gauss–Seidel sweep over the bars: moves both ends along the bar's direction at the start of the substep until it
 // has its length again, to first order. The old direction conserves energy; the new one would dissipate it.
-// Near a bar's length 1/(d·d_start) is a Newton step from 1/L²: rows of vectors are spared a division by it.
+// But for long bars, d·d_start is taken to be L²: rows of vectors are spared a division by it.
 // Cost: one pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
 static void sweep(ck_Native *native) {
     const ck_Model *model = native->model;
@@ -22,12 +23,16 @@ static void sweep(ck_Native *native) {
         double now[3], old[3];
         ck_subtract(now, b, a);
         ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
-        double square = bar->rest * bar->rest, part = ck_dot(now, old) / square;
-        // a bar that turned by more than some 66° in one substep is projected along itself instead
-        if (part <= 0.4) memcpy(old, now, sizeof old);
-        double quotient = part > 0.4 && part <= 1.6 ? (2 - part) / square : 1 / ck_dot(now, old);
-        if (!isfinite(quotient)) continue;
-        double scale = 0.5 * native->used.relaxation * (ck_dot(now, now) - square) * quotient / (weight_a + weight_b);
+        double square = bar->rest * bar->rest, squared = ck_dot(now, now), along = square;
+        if (squared > CK_LONG_BAR * square) {
+            along = ck_dot(now, old);
+            // a bar that turned by more than some 66° in one substep is projected along itself instead
+            if (along < 0.4 * square) {
+                along = squared;
+                memcpy(old, now, sizeof old);
+            }
+        }
+        double scale = 0.5 * native->used.relaxation * (squared - square) / along / (weight_a + weight_b);
         ck_add_scaled(a, weight_a * scale, old);
         ck_add_scaled(b, -weight_b * scale, old);
     }

@@ -32,6 +32,11 @@ typedef struct ck_Rows {
 
 ck_Rows ck_rows_of(const ck_Model *model);
 
+// True where a row alone has work enough for a processor, and several would not stay in the first cache.
+CK_INLINE bool ck_rows_are_wide(const ck_Rows *rows) {
+    return rows->span > 10;
+}
+
 // Where a vector stands in arrays of one number a particle, and of three, tiles. Shifted by one, its last lane is what
 // stands behind it: nothing that is paired, so that what is stored there is what was read. With a reach of two and rows
 // of two vectors that is the next row's first, or after the last row the array's end, which is there for this, too.

@@ -114,8 +114,14 @@ void ck_waves_destroy(ck_Waves *waves) {
     free(waves);
 }
 
+int ck_waves_depth(const ck_Waves *waves, long passes, long bytes) {
+    long depth = CK_SECOND_CACHE / 2 / bytes, most = waves ? passes / 8 : passes;
+    if (depth > most) depth = most;
+    return depth > 1 ? (int)depth : 1;
+}
+
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
-    int parts = waves && work->blocks > 0 ? work->waves / (2 * work->reach) : 1;
+    int parts = waves && work->blocks > 0 ? work->waves / (3 * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
     if (parts <= 1) {
         for (long block = 0; block < work->blocks; block++)

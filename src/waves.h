@@ -8,6 +8,9 @@
 
 #include "status.h"
 
+// Bytes that a core's second cache surely holds.
+#define CK_SECOND_CACHE (1 << 20)
+
 typedef struct ck_WaveWork {
     void (*run)(void *state, long block, int wave);
     void *state;
@@ -23,7 +26,12 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
-// Returns when all is done. Parts of fewer than 2·reach waves are given to fewer threads. Cost: some atomic
+// How many of the passes over a cloth a block should hold, each bytes of rows behind the one before: as many as a
+// second cache surely holds at once, for a cloth that is larger comes to it once a block. With several threads there
+// are to be eight blocks: while the first half of the first is done the second thread waits. At least 1.
+int ck_waves_depth(const ck_Waves *waves, long passes, long bytes);
+
+// Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads. Cost: some atomic
 // stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1
 // ms.
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work);

@@ -91,7 +91,7 @@ static void test_sweeps(void **state) {
     const ck_Engine *bars = ck_engine_find("native-bars");
     const double links = 30;
     for (uint32_t n = 1; n <= 4; n *= 2) {
-        ck_Settings settings = {.substeps = 20, .iterations = n}, used;
+        ck_Settings settings = {.substeps = 40, .iterations = n}, used;
         ck_Trajectory trajectory;
         ck_Reference prediction;
         fixture_run(&trajectory, &comparison.model, bars, &settings, &used);
@@ -102,8 +102,9 @@ static void test_sweeps(void **state) {
         double stretch = size * (ck_metric_value(sag, &comparison.model, &trajectory, &prediction) - 1);
         double foretold = size * (ck_metric_value(sag, &comparison.model, &prediction.trajectory, &prediction) - 1);
         double law = 9.81 * dt * dt * (links * (links - 1) - (n - 1)) / (2 * n);
-        // drag eases gravity's push by 1/(1 + drag·dt/2) = 1 %
-        assert_near("the stretch of swept bars, as a share of the law's", stretch / law, 1, 0.015);
+        // drag eases gravity's push by 1/(1 + drag·dt/2) = 0.5 %, and bars strained by up to 0.2 % before a sweep,
+        // which takes L² for d·d_start, are corrected by that much more
+        assert_near("the stretch of swept bars, as a share of the law's", stretch / law, 1, 0.01);
         assert_near("the predicted stretch, as a share", foretold / stretch, 1, n == 1 ? 0.005 : 2 / links + 0.005);
         ck_trajectory_free(&trajectory);
         ck_trajectory_free(&prediction.trajectory);
