@@ -31,10 +31,10 @@ static void run_wave(void *state, long block, int wave) {
 }
 
 void ck_explicit_step(ck_ExplicitCloth *cloth, uint32_t substeps, ck_Waves *waves) {
-    const long passes = substeps + 1L, row = 12 * (long)sizeof(double) * cloth->rows.stride;
+    const long passes = substeps + 1L;
     const int reach = reach_of(cloth);
     cloth->substeps = substeps;
-    cloth->depth = ck_waves_depth(waves, passes, reach * row);
+    cloth->depth = ck_waves_depth(waves, passes, cloth->rows.rows, reach, 12 * sizeof(double) * cloth->rows.stride);
     ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (passes + cloth->depth - 1) / cloth->depth,
                                        cloth->rows.rows + reach * (cloth->depth - 1), reach * cloth->depth});
 }

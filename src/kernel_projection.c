@@ -18,11 +18,10 @@ static void run_wave(void *state, long block, int wave) {
 }
 
 static int depth_of(const ck_ProjectedCloth *cloth, const ck_Waves *waves) {
-    if (!ck_rows_are_wide(&cloth->rows)) return waves ? DEPTH_WIDE : DEPTH;
-    const long row = 6 * (long)sizeof(double) * cloth->rows.stride;
-    const int depth = ck_waves_depth(waves, cloth->sweeps, CK_SWEEP_LAG * row);
-    // what stays in the second cache anyway has the rows it is at in the first one with fewer
-    return row * cloth->rows.rows > CK_SECOND_CACHE && depth > DEPTH_WIDE ? depth : DEPTH_WIDE;
+    const ck_Rows *rows = &cloth->rows;
+    const int depth = ck_waves_depth(waves, cloth->sweeps, rows->rows, CK_SWEEP_LAG, 6 * sizeof(double) * rows->stride);
+    const int least = waves || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH;
+    return depth > least ? depth : least;
 }
 
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
@@ -56,6 +55,7 @@ void ck_projection_destroy(ck_ProjectedCloth *cloth) {
     free(cloth->springs);
     free(cloth->multipliers);
     free(cloth->is_held);
+    free(cloth->far_from);
     free(cloth);
 }
 
@@ -162,7 +162,8 @@ ck_Status ck_projection_create(ck_ProjectedCloth **out, const ck_Loops *loops, c
     cloth->springs = ck_rows_allocate(&stripes, CK_DIRECTIONS);
     cloth->multipliers = cloth->terms & CK_SWEEP_REPEATED ? ck_rows_allocate(&cloth->rows, 4) : NULL;
     cloth->is_held = calloc((size_t)cloth->rows.rows, sizeof *cloth->is_held);
-    if (!cloth->state || !cloth->springs || !cloth->is_held ||
+    cloth->far_from = calloc((size_t)cloth->rows.rows, sizeof *cloth->far_from);
+    if (!cloth->state || !cloth->springs || !cloth->is_held || !cloth->far_from ||
         ((cloth->terms & CK_SWEEP_REPEATED) && !cloth->multipliers)) {
         ck_projection_destroy(cloth);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");

@@ -2,9 +2,22 @@
 #include "loop_projection.h"
 #include "lanes.h"
 
+#include <limits.h>
 #include <string.h>
 
-enum { DAMPED = CK_SWEEP_DAMPED, REPEATED = CK_SWEEP_REPEATED, BARS = CK_SWEEP_BARS, HELD = CK_SWEEP_HELD };
+enum {
+    DAMPED = CK_SWEEP_DAMPED,
+    REPEATED = CK_SWEEP_REPEATED,
+    BARS = CK_SWEEP_BARS,
+    HELD = CK_SWEEP_HELD,
+    FAR = CK_SWEEP_FAR
+};
+
+// A sweep at a row.
+typedef struct Visit {
+    int row;
+    long sweep;
+} Visit;
 
 // A vector of springs.
 typedef struct Ends {
@@ -47,36 +60,46 @@ CK_INLINE ck_Lanes3 span_of(const double *tiles, const Ends *ends) {
     return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
 }
 
+// s·(l² − L²)/(4·L²) of bars.
+CK_INLINE ck_Lanes scale_of(const Springs *springs, ck_Lanes squared) {
+    return ck_lanes_plus(-springs->share_rest, springs->share, squared);
+}
+
 CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way,
                          const int terms) {
     if (terms & HELD) scale += scale - scale * both_alike(cloth, ends);
     move(cloth, ends, scale, way, terms);
 }
 
-// Bars of which one is long: that one by s·(l² − L²)/(4·d·d_start), or along itself where it turned by more than 66°.
-// Seldom, and not in line, so that the others' registers are their own.
-static __attribute__((noinline)) void project_long(const ck_ProjectedCloth *cloth, Ends ends, ck_Lanes scale,
-                                                   bool held) {
+// Each bar by itself: by s·(l² − L²)/(4·d·d_start) where it is long, and along itself where it turned by more than 66°,
+// which in a row without long bars so far is asked of long ones alone. Seldom, and not in line, so that the others'
+// registers are their own.
+static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs, bool held,
+                                                  bool asks_all) {
     const ck_Lanes3 now = span_of(cloth->x, &ends), start = span_of(cloth->start, &ends);
     const ck_Lanes square = ck_lanes_all(cloth->rest[ends.kind] * cloth->rest[ends.kind]);
     const ck_Lanes along = ck_lanes3_dot(now, start), squared = ck_lanes3_dot(now, now);
-    const ck_LaneMask is_long = ck_lanes_less(ck_lanes_all(cloth->long_scale), scale);
-    const ck_LaneMask has_turned = ck_lanes_less(along, 0.4 * square);
+    const ck_Lanes near = scale_of(&springs, squared);
+    const ck_LaneMask is_long = ck_lanes_less(ck_lanes_all(cloth->long_scale), near);
+    const ck_Lanes asked = asks_all ? along : ck_lanes_choose(is_long, along, square);
+    const ck_LaneMask has_turned = ck_lanes_less(asked, CK_TURNED_BAR * square);
     const ck_Lanes length = ck_lanes_choose(has_turned, squared, along);
-    const ck_Lanes3 way = ck_lanes3_choose(has_turned, now, start);
-    move_bars(cloth, &ends, ck_lanes_choose(is_long, scale * square / length, scale),
-              ck_lanes3_choose(is_long, way, start), held ? HELD : 0);
+    move_bars(cloth, &ends, ck_lanes_choose(is_long, near * square / length, near),
+              ck_lanes3_choose(has_turned, now, start), held ? HELD : 0);
 }
 
 // Along d_start by s·(l² − L²)/(4·L²), where masses cancel and s is the relaxation: L² in the place of d·d_start, for a
-// division takes as long as all the rest, and the next sweep mends what that leaves. A bar longer than it may be so
-// comes by itself.
-CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, const int terms) {
+// division takes as long as all the rest, and the next sweep mends what that leaves. Where a bar turned by so much that
+// there is none of its length along d_start, that makes it long; so does the flight that turned it, mostly at once. A
+// row with a long bar is looked at bar by bar in the substep's further sweeps.
+CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, Visit visit,
+                           const int terms) {
     const ck_Lanes3 now = span_of(cloth->x, ends);
-    const ck_Lanes scale = ck_lanes_plus(-springs->share_rest, springs->share, ck_lanes3_dot(now, now));
-    if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0))
-        project_long(cloth, *ends, scale, (terms & HELD) != 0);
-    else
+    const ck_Lanes scale = scale_of(springs, ck_lanes3_dot(now, now));
+    if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0)) {
+        cloth->far_from[visit.row] = visit.sweep + 1;
+        project_far(cloth, *ends, *springs, (terms & HELD) != 0, false);
+    } else
         move_bars(cloth, ends, scale, span_of(cloth->start, ends), terms);
 }
 
@@ -139,31 +162,37 @@ CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, ck_Colour colour, i
     return (Vectors){0, 1, is_there ? span : 0};
 }
 
-CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe,
+CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe, Visit visit,
                               const int terms) {
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
         const Ends part = ends_after(*ends, lane, lane);
         const Springs springs = springs_of(stripe, lane);
-        if (terms & BARS)
-            project_bar(cloth, &part, &springs, terms);
+        if (terms & FAR)
+            project_far(cloth, part, springs, true, true);
+        else if (terms & BARS)
+            project_bar(cloth, &part, &springs, visit, terms);
         else
             project_spring(cloth, &part, &springs, terms);
     }
 }
 
 // The last vector, whose right is the first, comes by itself.
-CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, int row, const int terms) {
+CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, Visit visit, const int terms) {
     const ck_Stripe *stripes = cloth->stripes[direction_of(colour)];
-    const Vectors vectors = vectors_of(cloth, colour, row);
+    const Vectors vectors = vectors_of(cloth, colour, visit.row);
     const int last = cloth->rows.span - 1;
-    Ends ends = ends_of(cloth, colour, row, vectors.first);
+    Ends ends = ends_of(cloth, colour, visit.row, vectors.first);
     for (int i = vectors.first; i < vectors.end && i < last; i += vectors.step) {
-        project_stripe(cloth, &ends, &stripes[i], terms);
+        project_stripe(cloth, &ends, &stripes[i], visit, terms);
         ends = ends_after(ends, vectors.step * CK_STRIPE, vectors.step * 3 * CK_STRIPE);
     }
     if (vectors.end <= last) return;
-    ends = ends_of(cloth, colour, row, last);
-    project_stripe(cloth, &ends, &stripes[last], terms);
+    ends = ends_of(cloth, colour, visit.row, last);
+    project_stripe(cloth, &ends, &stripes[last], visit, terms);
+}
+
+static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour, Visit visit) {
+    project_row(cloth, colour, visit, BARS | FAR);
 }
 
 #define COLOURS 6
@@ -180,10 +209,13 @@ CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Wave *wav
     for (int i = first; i < end; i++) {
         int at = wave->wave - CK_SWEEP_LAG * i, row = at - (colour == CK_DOWN_LATE);
         if (row < 0 || at >= cloth->rows.rows) continue;
-        if (cloth->is_held[row])
-            project_row(cloth, colour, row, terms | HELD);
+        const Visit visit = {row, wave->first_sweep + i};
+        if ((terms & BARS) && cloth->far_from[row] <= visit.sweep)
+            project_far_row(cloth, colour, visit);
+        else if (cloth->is_held[row])
+            project_row(cloth, colour, visit, terms | HELD);
         else
-            project_row(cloth, colour, row, terms);
+            project_row(cloth, colour, visit, terms);
     }
 }
 
@@ -198,6 +230,7 @@ CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool 
 }
 
 CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
+    cloth->far_from[row] = LONG_MAX;
     for (int i = 0; i < cloth->rows.span; i++)
         for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
             const ck_Place at = ck_rows_place(&cloth->rows, row, i);

@@ -55,11 +55,12 @@ struct ck_ProjectedCloth {
     double *is_free;
     double *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
     bool *is_held;                       // [rows] a pin in the row or the one below
+    long *far_from;                      // [rows] sweep from which on bars are looked at one by one
     double *state, *springs, *multipliers;
 };
 
-// What a cloth does not have is not in its loop; HELD is a row's.
-enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4, CK_SWEEP_HELD = 8 };
+// What a cloth does not have is not in its loop; HELD and FAR are a row's.
+enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4, CK_SWEEP_HELD = 8, CK_SWEEP_FAR = 16 };
 
 // The sweeps of a block, and the row at which each is in a wave.
 typedef struct ck_Wave {

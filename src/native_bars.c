@@ -11,8 +11,9 @@
 
 // One Gauss–Seidel sweep over the bars: moves both ends along the bar's direction at the start of the substep until it
 // has its length again, to first order. The old direction conserves energy; the new one would dissipate it.
-// But for long bars, d·d_start is taken to be L²: rows of vectors are spared a division by it.
-// Cost: one pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
+// But for long bars, d·d_start is taken to be L²: rows of vectors are spared a division by it. A bar that turned by
+// more than 66° in one substep is projected along itself instead. Cost: one pass over bars. Source: Ryckaert, Ciccotti,
+// Berendsen 1977 (SHAKE).
 static void sweep(ck_Native *native) {
     const ck_Model *model = native->model;
     for (int i = 0; i < model->spring_count; i++) {
@@ -23,16 +24,10 @@ static void sweep(ck_Native *native) {
         double now[3], old[3];
         ck_subtract(now, b, a);
         ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
-        double square = bar->rest * bar->rest, squared = ck_dot(now, now), along = square;
-        if (squared > CK_LONG_BAR * square) {
-            along = ck_dot(now, old);
-            // a bar that turned by more than some 66° in one substep is projected along itself instead
-            if (along < 0.4 * square) {
-                along = squared;
-                memcpy(old, now, sizeof old);
-            }
-        }
-        double scale = 0.5 * native->used.relaxation * (squared - square) / along / (weight_a + weight_b);
+        double square = bar->rest * bar->rest, squared = ck_dot(now, now);
+        if (ck_dot(now, old) < CK_TURNED_BAR * square) memcpy(old, now, sizeof old);
+        double length = squared > CK_LONG_BAR * square ? ck_dot(now, old) : square;
+        double scale = 0.5 * native->used.relaxation * (squared - square) / length / (weight_a + weight_b);
         ck_add_scaled(a, weight_a * scale, old);
         ck_add_scaled(b, -weight_b * scale, old);
     }

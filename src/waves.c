@@ -12,6 +12,11 @@
 // Looks for a next job before a thread sleeps, some 100 µs: to wake it takes as long as a frame of a small cloth.
 #define IDLE_LOOKS 200000
 
+// Waves of a thread's part at least, times the reach.
+#define LEAST_PART 3
+// Bytes that the second cache of most cores holds.
+#define SECOND_CACHE (1 << 20)
+
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
 typedef struct Worker {
@@ -114,14 +119,19 @@ void ck_waves_destroy(ck_Waves *waves) {
     free(waves);
 }
 
-int ck_waves_depth(const ck_Waves *waves, long passes, long bytes) {
-    long depth = CK_SECOND_CACHE / 2 / bytes, most = waves ? passes / 8 : passes;
+int ck_waves_depth(const ck_Waves *waves, long passes, int rows, int lag, size_t row_bytes) {
+    if (rows * row_bytes <= SECOND_CACHE) return 1;
+    long depth = SECOND_CACHE / 2 / (long)(lag * row_bytes), most = passes;
+    if (waves) {
+        const int parted = rows / (LEAST_PART * lag * waves->threads);
+        most = parted < passes / 8 ? parted : passes / 8;
+    }
     if (depth > most) depth = most;
     return depth > 1 ? (int)depth : 1;
 }
 
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
-    int parts = waves && work->blocks > 0 ? work->waves / (3 * work->reach) : 1;
+    int parts = waves && work->blocks > 0 ? work->waves / (LEAST_PART * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
     if (parts <= 1) {
         for (long block = 0; block < work->blocks; block++)

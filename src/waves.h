@@ -8,8 +8,7 @@
 
 #include "status.h"
 
-// Bytes that a core's second cache surely holds.
-#define CK_SECOND_CACHE (1 << 20)
+#include <stddef.h>
 
 typedef struct ck_WaveWork {
     void (*run)(void *state, long block, int wave);
@@ -26,10 +25,10 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
-// How many of the passes over a cloth a block should hold, each bytes of rows behind the one before: as many as a
-// second cache surely holds at once, for a cloth that is larger comes to it once a block. With several threads there
-// are to be eight blocks: while the first half of the first is done the second thread waits. At least 1.
-int ck_waves_depth(const ck_Waves *waves, long passes, long bytes);
+// How many passes over rows of so many bytes a block should hold, each lag rows behind the one before, at least 1. A
+// cloth that a second cache cannot hold comes to it once a block: as many as keep half of it busy. With several threads
+// there are to be eight blocks, as the others wait while the first is in its first one, and parts enough for all.
+int ck_waves_depth(const ck_Waves *waves, long passes, int rows, int lag, size_t row_bytes);
 
 // Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads. Cost: some atomic
 // stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1

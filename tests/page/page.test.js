@@ -138,30 +138,42 @@ test("tables of a scene hold its rows, and are sorted by a click", async () => {
 	await details.locator("summary").click();
 });
 
-// The first asked for is held up until the second is asked for, and would have come last.
-test("of two scenes asked for in a row the second is shown", async () => {
-	await page.evaluate(async () => {
-		const unpack = fileText;
-		const held = [];
-		fileText = async (name) => {
-			const text = await unpack(name);
-			if (name.startsWith("cloth_two_corners.")) await new Promise((resolve) => held.push(resolve));
-			return text;
-		};
-		const replay = { load: async () => {} };
-		const first = showScene("cloth_two_corners", replay);
-		await showScene("rope_hanging", replay);
-		while (!held.length) await new Promise((resolve) => setTimeout(resolve));
-		await new Promise((resolve) => setTimeout(resolve, 50));
-		for (const release of held) release();
-		await first;
-		fileText = unpack;
+// A chart of the first asked for, or its replay, is held up until the second is shown, and comes last.
+for (const held of ["cloth_two_corners.cost.svg", "cloth_two_corners.replay"])
+	test(`of two scenes asked for in a row the second is shown, when ${held} is late`, async () => {
+		await selectScene("bounce");
+		const end = await page.getAttribute("#replay-time", "max");
+		await page.evaluate(async (held) => {
+			const unpack = fileBytes;
+			let release;
+			const second = new Promise((resolve) => release = resolve);
+			const isHeld = new Promise((resolve) => fileBytes = async (name) => {
+				const bytes = await unpack(name);
+				if (name === held) {
+					resolve();
+					await second;
+				}
+				return bytes;
+			});
+			const ask = (name) => {
+				const select = document.getElementById("scene-select");
+				select.value = name;
+				select.dispatchEvent(new Event("change"));
+			};
+			ask("cloth_two_corners");
+			await isHeld;
+			ask("bounce");
+			while (document.getElementById("scene").ariaBusy !== "false") await new Promise((resolve) => setTimeout(resolve));
+			release();
+			fileBytes = unpack;
+			await new Promise((resolve) => setTimeout(resolve, 500));
+		}, held);
+		assert.equal(await page.inputValue("#scene-select"), "bounce");
+		assert.equal(await page.getAttribute("#replay-time", "max"), end);
+		const titles = await page.locator("#scene-charts figcaption").allTextContents();
+		assert.ok(titles.length > 0);
+		for (const title of titles) assert.match(title, /^bounce/);
 	});
-	assert.equal(await page.inputValue("#scene-select"), "rope_hanging");
-	const titles = await page.locator("#scene-charts figcaption").allTextContents();
-	assert.ok(titles.length > 0);
-	for (const title of titles) assert.match(title, /^rope_hanging/);
-});
 
 test("the replay holds the runs' positions", async () => {
 	const file = readFileSync(join(directory, "replays/cloth_two_corners.replay"));
