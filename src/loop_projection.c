@@ -14,10 +14,10 @@ enum {
 };
 
 // A sweep at a row.
-typedef struct Visit {
+typedef struct RowSweep {
     int row;
     long sweep;
-} Visit;
+} RowSweep;
 
 // A vector of springs.
 typedef struct Ends {
@@ -92,12 +92,12 @@ static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth
 // division takes as long as all the rest, and the next sweep mends what that leaves. Where a bar turned by so much that
 // there is none of its length along d_start, that makes it long; so does the flight that turned it, mostly at once. A
 // row with a long bar is looked at bar by bar in the substep's further sweeps.
-CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, Visit visit,
+CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, RowSweep at,
                            const int terms) {
     const ck_Lanes3 now = span_of(cloth->x, ends);
     const ck_Lanes scale = scale_of(springs, ck_lanes3_dot(now, now));
     if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0)) {
-        cloth->far_from[visit.row] = visit.sweep + 1;
+        cloth->far_from[at.row] = at.sweep + 1;
         project_far(cloth, *ends, *springs, (terms & HELD) != 0, false);
     } else
         move_bars(cloth, ends, scale, span_of(cloth->start, ends), terms);
@@ -162,7 +162,7 @@ CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, ck_Colour colour, i
     return (Vectors){0, 1, is_there ? span : 0};
 }
 
-CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe, Visit visit,
+CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe, RowSweep at,
                               const int terms) {
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
         const Ends part = ends_after(*ends, lane, lane);
@@ -170,29 +170,29 @@ CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, 
         if (terms & FAR)
             project_far(cloth, part, springs, true, true);
         else if (terms & BARS)
-            project_bar(cloth, &part, &springs, visit, terms);
+            project_bar(cloth, &part, &springs, at, terms);
         else
             project_spring(cloth, &part, &springs, terms);
     }
 }
 
 // The last vector, whose right is the first, comes by itself.
-CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, Visit visit, const int terms) {
+CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, RowSweep at, const int terms) {
     const ck_Stripe *stripes = cloth->stripes[direction_of(colour)];
-    const Vectors vectors = vectors_of(cloth, colour, visit.row);
+    const Vectors vectors = vectors_of(cloth, colour, at.row);
     const int last = cloth->rows.span - 1;
-    Ends ends = ends_of(cloth, colour, visit.row, vectors.first);
+    Ends ends = ends_of(cloth, colour, at.row, vectors.first);
     for (int i = vectors.first; i < vectors.end && i < last; i += vectors.step) {
-        project_stripe(cloth, &ends, &stripes[i], visit, terms);
+        project_stripe(cloth, &ends, &stripes[i], at, terms);
         ends = ends_after(ends, vectors.step * CK_STRIPE, vectors.step * 3 * CK_STRIPE);
     }
     if (vectors.end <= last) return;
-    ends = ends_of(cloth, colour, visit.row, last);
-    project_stripe(cloth, &ends, &stripes[last], visit, terms);
+    ends = ends_of(cloth, colour, at.row, last);
+    project_stripe(cloth, &ends, &stripes[last], at, terms);
 }
 
-static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour, Visit visit) {
-    project_row(cloth, colour, visit, BARS | FAR);
+static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour, RowSweep at) {
+    project_row(cloth, colour, at, BARS | FAR);
 }
 
 #define COLOURS 6
@@ -209,13 +209,13 @@ CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Wave *wav
     for (int i = first; i < end; i++) {
         int at = wave->wave - CK_SWEEP_LAG * i, row = at - (colour == CK_DOWN_LATE);
         if (row < 0 || at >= cloth->rows.rows) continue;
-        const Visit visit = {row, wave->first_sweep + i};
-        if ((terms & BARS) && cloth->far_from[row] <= visit.sweep)
-            project_far_row(cloth, colour, visit);
+        const RowSweep here = {row, wave->first_sweep + i};
+        if ((terms & BARS) && cloth->far_from[row] <= here.sweep)
+            project_far_row(cloth, colour, here);
         else if (cloth->is_held[row])
-            project_row(cloth, colour, visit, terms | HELD);
+            project_row(cloth, colour, here, terms | HELD);
         else
-            project_row(cloth, colour, visit, terms);
+            project_row(cloth, colour, here, terms);
     }
 }
 

@@ -12,8 +12,8 @@
 // One Gauss–Seidel sweep over the bars: moves both ends along the bar's direction at the start of the substep until it
 // has its length again, to first order. The old direction conserves energy; the new one would dissipate it.
 // But for long bars, d·d_start is taken to be L²: rows of vectors are spared a division by it. A bar that turned by
-// more than 66° in one substep is projected along itself instead. Cost: one pass over bars. Source: Ryckaert, Ciccotti,
-// Berendsen 1977 (SHAKE).
+// more than 66° in one substep is projected along itself instead; rows ask that only once a bar was long. Cost: one
+// pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
 static void sweep(ck_Native *native) {
     const ck_Model *model = native->model;
     for (int i = 0; i < model->spring_count; i++) {
