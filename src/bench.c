@@ -4,8 +4,9 @@
 #include "engine.h"
 #include "loops.h"
 #include "scene.h"
+#include "springs.h"
 #include "stability.h"
-#include "vector.h"
+#include "statistics.h"
 
 #include <malloc.h>
 #include <math.h>
@@ -14,6 +15,7 @@
 #include <string.h>
 
 #define MAX_ROUNDS 99
+#define MAX_SIZES 16 // of a growing cloth, whose side doubles
 // How long a repeat lasts at least, s: far above the clock's grain.
 #define REPEAT 0.02
 // Substeps of a frame: what an engine does once a frame is shared out, as in use.
@@ -146,11 +148,6 @@ static void enter(Entrant *entrant, const Candidate *candidate, const ck_Model *
         snprintf(entrant->reason, sizeof entrant->reason, "one frame takes longer than the budget");
 }
 
-static int compare_numbers(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // quartiles: the median, the lower and the upper one; NULL: none, for the reason.
 static void add_row(ck_Csv *csv, const Body *body, const ck_Model *model, const char *engine, const char *setup,
                     const char *metric, const char *unit, const double *quartiles, double scale, const char *reason) {
@@ -168,10 +165,9 @@ static void add_row(ck_Csv *csv, const Body *body, const ck_Model *model, const 
 static void find_quartiles(const double *values, int count, double *quartiles) {
     double sorted[MAX_ROUNDS];
     memcpy(sorted, values, sizeof *sorted * (size_t)count);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare_numbers);
-    quartiles[0] = sorted[count / 2];
-    quartiles[1] = sorted[count / 4];
-    quartiles[2] = sorted[3 * count / 4];
+    quartiles[0] = ck_median(sorted, count);
+    quartiles[1] = ck_quantile(sorted, count, 0.25);
+    quartiles[2] = ck_quantile(sorted, count, 0.75);
 }
 
 static double updates_of(const Entrant *entrant, const ck_Model *model) {
@@ -273,17 +269,6 @@ static ck_Status add_seconds(ck_Csv *csv, const Body *body, const ck_BenchOption
     return status;
 }
 
-// The root mean square of (l − L)/L.
-static double strain_of(const ck_Model *model, const double *position) {
-    double sum = 0;
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        double strain = ck_distance(position + 3 * spring->a, position + 3 * spring->b) / spring->rest - 1;
-        sum += strain * strain;
-    }
-    return sqrt(sum / model->spring_count);
-}
-
 // One step of so many sweeps from the model's start: the strain that is left, and the CPU time; NaN where it fails.
 static double sweep_start(const Candidate *candidate, const ck_Model *model, uint32_t sweeps, double *seconds) {
     Entrant entrant = {.engine = ck_engine_find(candidate->engine), .candidate = candidate};
@@ -297,7 +282,7 @@ static double sweep_start(const Candidate *candidate, const ck_Model *model, uin
     *seconds = SUBSTEPS * time_frames(&entrant, 1);
     if (state && !*entrant.reason) {
         entrant.engine->read(entrant.state, state, state + 3 * model->particle_count);
-        strain = strain_of(model, state);
+        strain = ck_springs_rms_strain(model, state);
     }
     entrant.engine->destroy(entrant.state);
     free(state);
@@ -409,21 +394,18 @@ static ck_Status grow_to(ck_Csv *csv, const Body *body, const ck_BenchOptions *o
 
 // The exponent of time ~ particles^p, by least squares over all sizes.
 static ck_Status grow(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    double x[MAX_SIZES], y[MAX_SIZES];
+    int count = 0;
     ck_Status status = CK_OK;
     for (uint32_t side = 16; side <= (uint32_t)options->largest && !status; side *= 2) {
         double seconds = NAN;
         if (options->progress) options->progress("growing cloth", "native-verlet");
         status = grow_to(csv, &(Body){"cloth", side, side}, options, &seconds, error);
         if (isnan(seconds)) continue;
-        double a = 2 * log(side), b = log(seconds);
-        n++;
-        x += a;
-        y += b;
-        xx += a * a;
-        xy += a * b;
+        x[count] = 2 * log(side);
+        y[count++] = log(seconds);
     }
-    const double p = (n * xy - x * y) / (n * xx - x * x), each[3] = {p, p, p};
+    const double p = ck_slope(x, y, count), each[3] = {p, p, p};
     ck_Model none = {0};
     add_row(csv, &(Body){.name = "cloth"}, &none, "native-verlet", "", "growth_exponent", "1", each, 1, NULL);
     return status;

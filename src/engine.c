@@ -1,6 +1,7 @@
 #include "engine.h"
 
 #include "engine_list.h"
+#include "scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,6 +26,8 @@ void ck_engine_read(const ck_Engine *engine, const void *state, const ck_Traject
     for (int axis = 0; axis < 3; axis++) contact[axis] = NAN;
     if (engine->contact) engine->contact(state, contact);
 }
+
+_Static_assert(sizeof engines / sizeof *engines <= CK_SCENE_MAX_ENGINES, "raise CK_SCENE_MAX_ENGINES");
 
 int ck_engine_count(void) {
     return sizeof engines / sizeof *engines;

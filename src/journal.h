@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define CK_JOURNAL_VALUES 40
+#define CK_JOURNAL_VALUES 72
 
 // What is kept of a case. What values mean is the study's business; NaN where there is none.
 typedef struct ck_JournalRow {

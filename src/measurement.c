@@ -2,17 +2,15 @@
 
 #include "verdict.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
 ck_Status ck_measurement_take(ck_Measurement *measurement, const ck_Model *model, const ck_Reference *reference,
                               const ck_Engine *engine, const ck_Settings *wanted, const ck_Limits *limits, ck_Run *keep,
                               ck_Error *error) {
-    assert(ck_metric_count() <= CK_MEASUREMENT_METRICS);
     ck_Run own = {0}, *run = keep ? keep : &own;
     *measurement = (ck_Measurement){.cpu = NAN, .time_step = NAN};
-    for (int i = 0; i < CK_MEASUREMENT_METRICS; i++) measurement->values[i] = NAN;
+    for (int i = 0; i < CK_METRIC_CAPACITY; i++) measurement->values[i] = NAN;
     ck_Status status = ck_run_measure(run, model, engine, wanted, limits, error);
     if (!status) ck_verdict(run, reference);
     if (!status && run->trajectory.frame_count == model->frame_count + 1) {

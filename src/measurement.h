@@ -5,13 +5,11 @@
 #include "runner.h"
 #include "truth.h"
 
-#define CK_MEASUREMENT_METRICS 32
-
 typedef struct ck_Measurement {
     ck_RunStatus status;
     char reason[256];
     double cpu, time_step;                 // s of the measured pass, s
-    double values[CK_MEASUREMENT_METRICS]; // in the order of the metric table; NaN where one does not apply
+    double values[CK_METRIC_CAPACITY]; // in the order of the metric table; NaN where one does not apply
 } ck_Measurement;
 
 // Runs, judges and measures. Errors: CK_NO_MEMORY, CK_IO.

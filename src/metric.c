@@ -1,6 +1,9 @@
 #include "metric.h"
 
+#include "energy.h"
 #include "metric_contact.h"
+#include "metric_swing.h"
+#include "springs.h"
 #include "vector.h"
 
 #include <string.h>
@@ -22,7 +25,8 @@ static bool fall_direction(const ck_Model *model, double *down) {
     return true;
 }
 
-// Drop of the lowest particle below the highest pin, or without pins below the highest start; / size.
+// Drop of the lowest particle that is free at some time below the highest pin, or without pins below the highest start;
+// / size.
 static double sag_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const ck_Reference *reference) {
     (void)reference;
     double down[3], top = INFINITY, bottom = -INFINITY;
@@ -30,33 +34,28 @@ static double sag_at(const ck_Model *model, const ck_Trajectory *trajectory, int
     const double *position = ck_trajectory_position(trajectory, frame);
     for (int i = 0; i < model->particle_count; i++) {
         if (model->pinned[i] || !model->pin_count) top = fmin(top, ck_dot(model->position + 3 * i, down));
-        bottom = fmax(bottom, ck_dot(position + 3 * i, down));
+        if (!ck_model_is_held(model, i)) bottom = fmax(bottom, ck_dot(position + 3 * i, down));
     }
-    return (bottom - top) / model->size;
-}
-
-static double strain(const ck_Spring *spring, const double *position) {
-    return ck_distance(position + 3 * spring->a, position + 3 * spring->b) / spring->rest - 1;
+    return isfinite(bottom) ? (bottom - top) / model->size : NAN;
 }
 
 static double stretch_max_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                              const ck_Reference *reference) {
     (void)reference;
-    double largest = -INFINITY;
-    for (int i = 0; i < model->spring_count; i++)
-        largest = fmax(largest, strain(&model->springs[i], ck_trajectory_position(trajectory, frame)));
-    return model->spring_count ? largest : NAN;
+    return ck_springs_largest_strain(model, ck_trajectory_position(trajectory, frame));
 }
 
 static double stretch_rms_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                              const ck_Reference *reference) {
     (void)reference;
-    double sum = 0;
-    for (int i = 0; i < model->spring_count; i++) {
-        double value = strain(&model->springs[i], ck_trajectory_position(trajectory, frame));
-        sum += value * value;
-    }
-    return model->spring_count ? sqrt(sum / model->spring_count) : NAN;
+    return ck_springs_rms_strain(model, ck_trajectory_position(trajectory, frame));
+}
+
+static double stretch_peak_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+    double largest = NAN;
+    for (int frame = 0; frame < trajectory->frame_count; frame++)
+        largest = fmax(largest, stretch_max_at(model, trajectory, frame, reference));
+    return largest;
 }
 
 // mean square distance of two sets of positions, m²
@@ -90,43 +89,9 @@ static double position_rms_between(const ck_Model *model, const ck_Trajectory *o
     return sqrt(sum / one->frame_count) / model->size;
 }
 
-typedef struct Energy {
-    double kinetic, elastic, field; // J
-} Energy;
-
-static Energy energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
-    const double *position = ck_trajectory_position(trajectory, frame),
-                 *velocity = ck_trajectory_velocity(trajectory, frame);
-    Energy energy = {0};
-    for (int i = 0; i < model->particle_count; i++) {
-        double field[3];
-        // a pin neither moves nor falls, until it is let go
-        ck_model_field(model, i, field);
-        energy.kinetic += 0.5 * model->mass[i] * ck_dot(velocity + 3 * i, velocity + 3 * i);
-        energy.field -= model->mass[i] * (ck_dot(field, position + 3 * i) - ck_dot(field, model->position + 3 * i));
-    }
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        double stretch = spring->rest * strain(spring, position);
-        if (isfinite(spring->stiffness)) energy.elastic += 0.5 * spring->stiffness * stretch * stretch;
-    }
-    return energy;
-}
-
-// Energy gained over the start, / the largest drop of potential or the energy there was at the start.
 static double energy_drift_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
-    Energy start = energy_at(model, trajectory, 0);
-    double total = start.kinetic + start.elastic, gained = 0, drop = 0;
-    for (int frame = 1; frame < trajectory->frame_count; frame++) {
-        Energy energy = energy_at(model, trajectory, frame);
-        gained = fmax(gained, energy.kinetic + energy.elastic + energy.field - total);
-        drop = fmax(drop, -energy.field);
-    }
-    // below the energy of a millionth of its size per second there is only rounding
-    double rounding = 1e-12 * ck_model_free_mass(model) * model->size * model->size;
-    double scale = fmax(rounding, fmax(drop, total));
-    return scale > 0 ? gained / scale : NAN;
+    return ck_energy_drift(model, trajectory);
 }
 
 static double speed_rms(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
@@ -155,76 +120,27 @@ static double settle_time_over(const ck_Model *model, const ck_Trajectory *traje
     return last_frame(trajectory) - frame >= (last_frame(trajectory) + 19) / 20 ? frame * trajectory->step : NAN;
 }
 
-// rms acceleration over the last tenth of the run, / that of the field. By differences of velocity, frame to frame.
+// How far the body moves over the last frames from first on, rms over particles / size.
+static double motion_since(const ck_Model *model, const ck_Trajectory *trajectory, int first) {
+    double largest = 0;
+    for (int frame = first; frame < trajectory->frame_count; frame++)
+        largest = fmax(largest, mean_square(model, ck_trajectory_position(trajectory, frame),
+                                            ck_trajectory_position(trajectory, last_frame(trajectory))));
+    return sqrt(largest) / model->size;
+}
+
+// rms acceleration over the last tenth of the run, / that of the field. By differences of velocity, frame to frame. Of
+// a body that goes somewhere, by more than a hundredth of its size, it would be the acceleration of its path.
 static double jitter_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
     double field[3], sum = 0;
     ck_model_mean_field(model, field);
     int last = last_frame(trajectory), first = last - (last + 9) / 10;
-    if (!(ck_length(field) > 0) || !model->pin_count) return NAN;
+    if (!(ck_length(field) > 0) || !model->pin_count || motion_since(model, trajectory, first) > 0.01) return NAN;
     for (int frame = first; frame < last; frame++)
         sum += mean_square(model, ck_trajectory_velocity(trajectory, frame + 1),
                            ck_trajectory_velocity(trajectory, frame));
     return sqrt(sum / (last - first)) / trajectory->step / ck_length(field);
-}
-
-// Where the body swings: its centre of mass along the start velocity, or without one along its level offset from the
-// pins.
-static bool swing_direction(const ck_Model *model, double *direction, double *origin) {
-    double center[3] = {0}, pins[3] = {0}, down[3], mass = ck_model_free_mass(model);
-    memset(direction, 0, 3 * sizeof(double));
-    for (int i = 0; i < model->particle_count; i++) {
-        if (!model->pinned[i]) ck_add_scaled(center, model->mass[i] / mass, model->position + 3 * i);
-        if (!model->pinned[i]) ck_add_scaled(direction, model->mass[i] / mass, model->velocity + 3 * i);
-        if (model->pinned[i]) ck_add_scaled(pins, 1.0 / model->pin_count, model->position + 3 * i);
-    }
-    memcpy(origin, center, sizeof center);
-    if (!(ck_length(direction) > 0) && fall_direction(model, down)) {
-        ck_subtract(direction, center, pins);
-        ck_add_scaled(direction, -ck_dot(direction, down), down);
-        memcpy(origin, pins, sizeof pins);
-    }
-    return model->pin_count && ck_length(direction) > 1e-9 * model->size;
-}
-
-// Where the cubic through two frames' values and rates crosses 0, as a share of the step. Its error is of fourth order.
-static double crossing(double from, double to, double from_rate, double to_rate) {
-    double low = 0, high = 1;
-    for (int i = 0; i < 60; i++) {
-        double t = 0.5 * (low + high), s = 1 - t;
-        double value =
-            s * s * (1 + 2 * t) * from + t * t * (3 - 2 * t) * to + s * s * t * from_rate - t * t * s * to_rate;
-        if ((value > 0) == (from > 0))
-            low = t;
-        else
-            high = t;
-    }
-    return 0.5 * (low + high);
-}
-
-// Twice the mean time between the centre of mass's passes through rest; none with fewer than three of them.
-static double period_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
-    (void)reference;
-    double direction[3], origin[3], before = 0, rate_before = 0, first = 0, last = 0, mass = ck_model_free_mass(model);
-    int passes = 0;
-    if (!swing_direction(model, direction, origin)) return NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++) {
-        double now = -ck_dot(origin, direction), rate = 0;
-        for (int i = 0; i < model->particle_count; i++) {
-            if (model->pinned[i]) continue;
-            now += model->mass[i] / mass * ck_dot(ck_trajectory_position(trajectory, frame) + 3 * i, direction);
-            rate += model->mass[i] / mass * ck_dot(ck_trajectory_velocity(trajectory, frame) + 3 * i, direction) *
-                    trajectory->step;
-        }
-        // a start at rest's place is no pass: it would be found by rounding only
-        if (frame > 1 && (now > 0) != (before > 0)) {
-            last = (frame - 1 + crossing(before, now, rate_before, rate)) * trajectory->step;
-            if (!passes++) first = last;
-        }
-        before = now;
-        rate_before = rate;
-    }
-    return passes > 2 ? 2 * (last - first) / (passes - 1) : NAN;
 }
 
 // rms difference of a frame's value to that of a moving truth, over the whole run: points may have parted long before.
@@ -248,8 +164,8 @@ static double sag_path_over(const ck_Model *model, const ck_Trajectory *trajecto
 }
 
 static double energy_of(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
-    Energy energy = energy_at(model, trajectory, frame);
-    return energy.kinetic + energy.elastic + energy.field;
+    ck_Energy energy = ck_energy_at(model, trajectory, frame);
+    return ck_energy_total(&energy);
 }
 
 static double mechanical_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
@@ -258,30 +174,28 @@ static double mechanical_energy_at(const ck_Model *model, const ck_Trajectory *t
     return energy_of(model, trajectory, frame);
 }
 
-// In units of the energy that the truth turns over: its largest drop of potential, or what it has at the start.
+// In units of the energy that the truth turns over.
 static double energy_path_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     double off = path_rms(model, trajectory, reference, energy_of);
-    Energy start = energy_at(model, trajectory, 0);
-    double scale = start.kinetic + start.elastic;
-    for (int frame = 0; frame < reference->trajectory.frame_count && !isnan(off); frame++)
-        scale = fmax(scale, -energy_at(model, &reference->trajectory, frame).field);
-    return scale > 0 ? off / scale : NAN;
+    return isnan(off) ? NAN : off / ck_energy_scale(model, &reference->trajectory);
 }
 
 static const ck_Metric metrics[] = {
-    {"sag", "1", "Largest drop below the highest pin / size", CK_TRUTH_OF_STATE, .at = sag_at},
-    {"stretch_max", "1", "Largest spring strain", CK_TRUTH_OF_STATE, .at = stretch_max_at},
-    {"stretch_rms", "1", "Root mean square spring strain", CK_TRUTH_OF_STATE, .at = stretch_rms_at},
-    {"position_rms", "1", "Root mean square distance to the truth / size", CK_TRUTH_ZERO, position_rms_at,
-     position_rms_over, position_rms_between},
-    {"energy_drift", "1", "Gained energy / largest potential drop or start energy", CK_TRUTH_ZERO,
+    {"sag", "1", "Largest drop of a free particle below the highest pin at the end / size", CK_TRUTH_OF_STATE, .at = sag_at},
+    {"stretch_max", "1", "Largest spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_max_at},
+    {"stretch_rms", "1", "Root mean square spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_rms_at},
+    {"stretch_peak", "1", "Largest spring strain of the whole run", CK_TRUTH_OF_STATE, .over = stretch_peak_over},
+    {"position_rms", "1", "Root mean square distance to the truth / size", CK_TRUTH_ZERO, .at = position_rms_at,
+     .over = position_rms_over, .between = position_rms_between, .to_horizon = true},
+    {"energy_drift", "1", "Energy gained, or lost beyond the scene's own damping / what it turns over", CK_TRUTH_ZERO,
      .over = energy_drift_over},
     {"settle_time", "s", "Time after which the body stays still", CK_TRUTH_NONE, .over = settle_time_over},
     {"sag_path", "1", "Root mean square difference of sag(t) to the truth's, whole run", CK_TRUTH_ZERO,
      .over = sag_path_over},
     {"energy_path", "1", "Root mean square difference of energy(t) to the truth's / what it turns over", CK_TRUTH_ZERO,
      .over = energy_path_over},
-    {"period", "s", "Time of one swing of the centre of mass", CK_TRUTH_OF_STATE, .over = period_over},
+    {"period", "s", "Time of one swing of the centre of mass", CK_TRUTH_OF_STATE, .over = ck_metric_period_over,
+     .unsure = ck_metric_period_unsure},
     {"jitter", "1", "Root mean square acceleration at the end / that of the field", CK_TRUTH_ZERO_STILL,
      .over = jitter_over},
     {"penetration_max", "1", "Deepest a particle was inside a collider / spacing", CK_TRUTH_ZERO,
@@ -301,6 +215,8 @@ static const ck_Metric metrics[] = {
     {"energy", "J", "Mechanical energy, of gravity and force counted from the start; over time only",
      CK_TRUTH_OF_SERIES, .at = mechanical_energy_at},
 };
+
+_Static_assert(sizeof metrics / sizeof *metrics <= CK_METRIC_CAPACITY, "raise CK_METRIC_CAPACITY");
 
 int ck_metric_count(void) {
     return sizeof metrics / sizeof *metrics;

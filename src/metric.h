@@ -33,7 +33,13 @@ typedef struct ck_Metric {
     double (*over)(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
     // How far two engines are apart. NULL: the difference of their values.
     double (*between)(const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other);
+    // How far off the value is that is read off a path's frames, in the metric's unit. NULL: by rounding only.
+    double (*unsure)(const ck_Model *model, const ck_Trajectory *trajectory);
+    bool to_horizon; // reads no frame beyond the truth's horizon
 } ck_Metric;
+
+// Room for as many metrics in all that holds a value of each.
+#define CK_METRIC_CAPACITY 32
 
 int ck_metric_count(void);
 const ck_Metric *ck_metric_at(int index);

@@ -204,6 +204,7 @@ static void describe(const void *context, int index, char *key, size_t size) {
 }
 
 enum { CPU, DISTANCE, METRICS };
+_Static_assert(METRICS + CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOURNAL_VALUES");
 
 static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Error *error) {
     const ck_Needs *needs = context;

@@ -1,17 +1,8 @@
 #include "outlier.h"
 
+#include "statistics.h"
+
 #include <math.h>
-#include <stdlib.h>
-
-static int compare_numbers(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int count) {
-    qsort(values, (size_t)count, sizeof *values, compare_numbers);
-    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
-}
 
 ck_Outlier ck_outlier_find(const ck_Comparison *comparison, const ck_Metric *metric) {
     ck_Outlier outlier = {.run = -1};
@@ -37,7 +28,7 @@ ck_Outlier ck_outlier_find(const ck_Comparison *comparison, const ck_Metric *met
         int used = 0;
         for (int j = 0; j < count; j++)
             if (j != i) others[used++] = apart[i][j];
-        double distance = median(others, used);
+        double distance = ck_median(others, used);
         if (distance > outlier.distance || i == 0) {
             outlier.distance = distance;
             farthest = i;
@@ -48,6 +39,6 @@ ck_Outlier ck_outlier_find(const ck_Comparison *comparison, const ck_Metric *met
         for (int j = i + 1; j < count; j++)
             if (i != farthest && j != farthest) among[used++] = apart[i][j];
     outlier.run = runs[farthest];
-    outlier.rest = median(among, used);
+    outlier.rest = ck_median(among, used);
     return outlier;
 }

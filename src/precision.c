@@ -1,5 +1,6 @@
 #include "precision.h"
 
+#include "statistics.h"
 #include "trial.h"
 
 #include <math.h>
@@ -159,21 +160,17 @@ static void add_summary(const ck_Precision *precision, ck_Csv *csv, const ck_Eng
 // The exponent p of error ~ dt^p over the finest points that the truth can tell; NaN with fewer than three.
 static double fit_order(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
                         int *points) {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    double x[MOST_FIT_POINTS], y[MOST_FIT_POINTS];
+    *points = 0;
     // an engine's ladder goes from coarse to fine
-    for (int i = precision->case_count - 1; i >= 0 && n < MOST_FIT_POINTS; i--) {
+    for (int i = precision->case_count - 1; i >= 0 && *points < MOST_FIT_POINTS; i--) {
         double error = rows[i].values[ERROR];
         if (precision->cases[i].engine != engine || !precision->cases[i].is_ladder || !counts(&rows[i])) continue;
         if (error > COARSEST_FIT || !(error > ABOVE_UNCERTAINTY * precision->uncertainty)) continue;
-        double a = log(rows[i].values[DT]), b = log(error);
-        n++;
-        x += a;
-        y += b;
-        xx += a * a;
-        xy += a * b;
+        x[*points] = log(rows[i].values[DT]);
+        y[(*points)++] = log(error);
     }
-    *points = (int)n;
-    return n < 3 ? NAN : (n * xy - x * y) / (n * xx - x * x);
+    return *points < 3 ? NAN : ck_slope(x, y, *points);
 }
 
 static void summarise_order(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #define AGREEMENT 1e-9
-#define NUDGE 1e-9
 #define GROWTH 1e4
 // Steps of a whole path that are tried at most; a 20×20 cloth takes some 50 µs each.
 #define MAX_STEPS 4e6
@@ -52,8 +51,8 @@ static void runge_kutta(const ck_Model *model, double dt, double *y, double *k, 
                       weights[3] * k[3 * whole + j]);
 }
 
-static void nudge_start(const ck_Model *model, double *position, double nudge) {
-    ck_Random random = ck_random_seed(1);
+static void nudge_start(const ck_Model *model, double *position, double nudge, uint64_t seed) {
+    ck_Random random = ck_random_seed(seed);
     for (int i = 0; i < 3 * model->particle_count; i++) {
         double sign = ck_random_unit(&random) < 0.5 ? -1 : 1;
         if (!model->pinned[i / 3]) position[i] += sign * nudge;
@@ -67,7 +66,7 @@ static void let_go(const ck_Model *now, int frame) {
 }
 
 ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
-                                 ck_Error *error) {
+                                 uint64_t seed, ck_Error *error) {
     ck_Status status = ck_trajectory_create(trajectory, model, error);
     if (status) return status;
     const size_t half = 3 * (size_t)model->particle_count, whole = 2 * half;
@@ -84,7 +83,7 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
     memcpy(pinned, model->pinned, (size_t)model->particle_count * sizeof *pinned);
     memcpy(y, model->position, half * sizeof(double));
     memcpy(y + half, model->velocity, half * sizeof(double));
-    if (nudge > 0) nudge_start(model, y, nudge);
+    if (nudge > 0) nudge_start(model, y, nudge, seed);
     for (int frame = 0; frame <= model->frame_count && !status; frame++) {
         status = ck_child_check(error);
         if (frame) let_go(&now, frame - 1);
@@ -122,15 +121,29 @@ static double disagreement(const ck_ReferencePath *path, const ck_Model *model) 
 // How far the finest path so far can be trusted.
 static ck_Status find_horizon(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
     ck_Trajectory nudged;
-    double nudge = NUDGE * model->size;
-    ck_Status status = ck_reference_integrate(&nudged, model, path->substeps, nudge, error);
+    double nudge = CK_REFERENCE_NUDGE * model->size;
+    ck_Status status = ck_reference_integrate(&nudged, model, path->substeps, nudge, 1, error);
     int frames = nudged.frame_count < path->fine.frame_count ? nudged.frame_count : path->fine.frame_count;
     path->horizon = 0;
     while (!status && path->horizon + 1 < frames &&
-           distance(model, &path->fine, &nudged, path->horizon + 1) < GROWTH * NUDGE)
+           distance(model, &path->fine, &nudged, path->horizon + 1) < GROWTH * CK_REFERENCE_NUDGE)
         path->horizon++;
     ck_trajectory_free(&nudged);
     return status;
+}
+
+// The method is stable to 2.78/ω; it starts at a quarter of that.
+static ck_Status first_substeps(const ck_Model *model, int *substeps) {
+    double frequency;
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, 0.7 / fmax(frequency, 1e-300)));
+    return status;
+}
+
+double ck_reference_work(const ck_Model *model) {
+    int substeps;
+    if (first_substeps(model, &substeps)) return INFINITY;
+    return 4.0 * substeps * model->frame_count * (model->spring_count + model->particle_count);
 }
 
 ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
@@ -138,13 +151,10 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
     unsigned beyond = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE;
     if (model->terms & beyond)
         return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no rigid bars or colliders", model->name);
-    double frequency;
-    ck_Status status = ck_stability_frequency(model, &frequency);
-    // the method is stable to 2.78/ω; it starts at a quarter of that
-    path->substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, 0.7 / fmax(frequency, 1e-300)));
+    ck_Status status = first_substeps(model, &path->substeps);
     if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
         return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g steps", model->name, MAX_STEPS);
-    if (!status) status = ck_reference_integrate(&path->fine, model, path->substeps, 0, error);
+    if (!status) status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
     path->agreement = INFINITY;
     while (!status && path->agreement > AGREEMENT) {
         if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
@@ -154,7 +164,7 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
         path->coarse = path->fine;
         path->fine = (ck_Trajectory){0};
         path->substeps *= 2;
-        status = ck_reference_integrate(&path->fine, model, path->substeps, 0, error);
+        status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
         if (!status) status = find_horizon(path, model, error);
         path->agreement = disagreement(path, model);
     }

@@ -13,11 +13,17 @@ void ck_reference_accelerate(const ck_Model *model, const double *position, cons
                              double *acceleration);
 
 // The path from the model's start by the classical fourth-order Runge–Kutta method, substeps to a frame.
-//   nudge  m, added to the start of every free coordinate with a sign of its own; 0: none
+//   nudge  m, added to the start of every free coordinate with a sign of its own, by seed; 0: none
 // Writes all frames; stops early, with fewer frames, where numbers leave the finite.
 // Errors: CK_NO_MEMORY. Free trajectory in any case. Source: Kutta 1901.
 ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
-                                 ck_Error *error);
+                                 uint64_t seed, ck_Error *error);
+
+// The nudge, in sizes, whose growth says how long a path can be trusted.
+#define CK_REFERENCE_NUDGE 1e-9
+
+// How many springs and particles a first path of a model evaluates: some 5 ns each.
+double ck_reference_work(const ck_Model *model);
 
 // A path that halving its step no longer moves, and how far it can be trusted.
 typedef struct ck_ReferencePath {

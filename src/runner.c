@@ -1,6 +1,7 @@
 #include "runner.h"
 
 #include "clock.h"
+#include "statistics.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -184,22 +185,10 @@ void ck_run_free(ck_Run *run) {
     *run = (ck_Run){0};
 }
 
-static int compare_numbers(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-// Linear interpolation between order statistics, as R's default does. Source: Hyndman and Fan 1996, type 7.
 static double quantile(const ck_Timing *timing, double share) {
     double sorted[CK_MAX_REPEATS];
-    int count = timing->repeat_count;
-    if (!count) return NAN;
-    memcpy(sorted, timing->cpu, sizeof *sorted * (size_t)count);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare_numbers);
-    double at = share * (count - 1);
-    int below = (int)at;
-    int above = below + 1 < count ? below + 1 : below;
-    return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
+    memcpy(sorted, timing->cpu, sizeof *sorted * (size_t)timing->repeat_count);
+    return ck_quantile(sorted, timing->repeat_count, share);
 }
 
 double ck_timing_median(const ck_Timing *timing) {

@@ -8,10 +8,10 @@
 
 // What a run can end in.
 typedef enum ck_RunStatus {
-    CK_RUN_OK,
+    CK_RUN_OK,            // wherever it came to rest: its error grades that
     CK_RUN_UNSETTLED,     // still moves at the end of a scene whose truth is at rest
-    CK_RUN_OVERSTRETCHED, // a spring is more than twice its length
-    CK_RUN_ENERGY_GAIN,   // gained more than a tenth of the energy there was
+    CK_RUN_OVERSTRETCHED, // moves on with a spring of twice its length, more than its stiffness allows
+    CK_RUN_ENERGY_GAIN,   // its motion gained more than a tenth of all the energy there was
     CK_RUN_DIVERGED,      // left the finite numbers
     CK_RUN_ABORTED,
     CK_RUN_TIMED_OUT,

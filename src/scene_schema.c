@@ -3,7 +3,6 @@
 #include "engine.h"
 #include "scene.h"
 
-#include <assert.h>
 
 #define OPTIONAL CYAML_FLAG_OPTIONAL
 #define REQUIRED CYAML_FLAG_DEFAULT
@@ -187,7 +186,6 @@ static const cyaml_schema_value_t scene_schema = {CYAML_VALUE_MAPPING(CYAML_FLAG
 
 const cyaml_schema_value_t *ck_scene_schema(void) {
     int count = ck_engine_count();
-    assert(count <= CK_SCENE_MAX_ENGINES);
     for (int i = 0; i < count; i++)
         settings_fields[i] =
             (cyaml_schema_field_t){.key = ck_engine_at(i)->name,

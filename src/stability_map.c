@@ -2,6 +2,7 @@
 
 #include "equilibrium.h"
 #include "random.h"
+#include "springs.h"
 #include "stability.h"
 #include "vector.h"
 
@@ -116,11 +117,7 @@ static void measure_rest(ck_StabilityRest *rest, const ck_Model *model, double *
     rest->transverse = across > 0 ? 2 / sqrt(across) : INFINITY;
     rest->frequency = sqrt(find_largest(model, rest->position, false, memory));
     rest->damping = damping_of_motion(model, rest->position, memory);
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        double length = ck_distance(rest->position + 3 * spring->a, rest->position + 3 * spring->b);
-        rest->strain = fmax(rest->strain, length / spring->rest - 1);
-    }
+    rest->strain = ck_springs_largest_strain(model, rest->position);
 }
 
 static ck_Status find_rest(ck_StabilityRest *rest, const ck_StabilityMap *map, double stiffness, ck_Error *error) {
@@ -254,13 +251,8 @@ static double in_quarter(double (*measure)(const ck_Trajectory *, int), const ck
 static Class judge(const ck_Run *run, double size, double gravity, double *strain, double *speed) {
     const ck_Trajectory *path = &run->trajectory;
     const ck_Model *model = run->model;
-    *strain = -1;
+    *strain = ck_springs_largest_strain(model, ck_trajectory_position(path, FRAMES));
     *speed = in_quarter(rms_speed, path, 4);
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        const double *x = ck_trajectory_position(path, FRAMES);
-        *strain = fmax(*strain, ck_distance(x + 3 * spring->a, x + 3 * spring->b) / spring->rest - 1);
-    }
     double way = in_quarter(rms_way, path, 4);
     bool is_fast = *speed > 0.1 * sqrt(2 * gravity * size) || way > 1e-3 * size;
     bool keeps_on = *speed > 0.1 * in_quarter(rms_speed, path, 2) || way > 0.1 * in_quarter(rms_way, path, 2);

@@ -1,6 +1,7 @@
 #include "truth.h"
 
 #include "child.h"
+#include "reference.h"
 #include "truth_cache.h"
 #include "truth_contact.h"
 #include "truth_forms.h"
@@ -35,9 +36,9 @@ static const ck_TruthForm forms[] = {
     {"longitudinal_modes", CLOSED, "fixed-free chain: w_j = 2*sqrt(k/m)*sin((2j-1)*pi/(2*(2N+1)))", false,
      .at = ck_truth_longitudinal_modes},
     {"taut_string", CLOSED, "beaded string: w_j = 2*sqrt(T/(m*d))*sin(j*pi/(2*(N+1)))", false,
-     .at = ck_truth_taut_string, .off = ck_truth_taut_string_off},
+     .at = ck_truth_taut_string, .is_linear = true, .off = ck_truth_taut_string_off},
     {"hanging_chain_modes", CLOSED, "w^2 = (g/l)*zeros of the Laguerre polynomial L_N; shapes L_i", false,
-     .at = ck_truth_hanging_chain, .off = ck_truth_hanging_chain_off},
+     .at = ck_truth_hanging_chain, .is_linear = true, .off = ck_truth_hanging_chain_off},
     {"pendulum", CLOSED, "sin(theta/2) = sin(theta_0/2)*cd(sqrt(g/L)*t); period 2*pi*sqrt(L/g)/AGM(1, cos(theta_0/2))",
      false, .at = ck_truth_pendulum},
     {"bounce", CLOSED, "heights e^(2n)*h_0, rest after t_1 + 2*e*v_1/(g*(1 - e))", false, .terms = CK_TERM_PLANE,
@@ -91,6 +92,23 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {
     return status;
 }
 
+// What a reference may cost beside a closed form: some seconds.
+#define MOST_WORK 1e8
+
+// A linear theory has an amplitude: where the scene can be integrated, the difference to that says how far it is off.
+static ck_Status add_reference(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
+    ck_ReferencePath path;
+    if (ck_reference_work(model) > MOST_WORK) return CK_OK;
+    ck_Error why = {0};
+    ck_Status status = ck_reference_path_create(&path, model, &why);
+    if (!status) {
+        truth->paths[truth->path_count++] = path.fine;
+        path.fine = (ck_Trajectory){0};
+    }
+    ck_reference_path_free(&path);
+    return status == CK_NO_MEMORY ? ck_fail(error, status, "%s", why.message) : CK_OK;
+}
+
 // Samples a closed form at the model's frames; a static one once.
 static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
     ck_Trajectory *path = &truth->paths[0];
@@ -105,7 +123,8 @@ static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error)
     }
     truth->path_count = 1;
     truth->reference.horizon = path->frame_count - 1;
-    if (truth->form->off) truth->off = truth->form->off(model);
+    if (!status && truth->form->is_linear) status = add_reference(truth, model, error);
+    if (truth->form->off && truth->path_count == 1) truth->off = truth->form->off(model);
     return status;
 }
 
@@ -137,19 +156,24 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
     truth->reference.trajectory = truth->paths[0];
     if (!status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count)
-        snprintf(truth->kind, sizeof truth->kind, "%s, points to %.3g s", truth->form->kind,
-                 truth->reference.horizon * model->step);
+        snprintf(truth->kind, sizeof truth->kind, "%s, points to %.3g s, then an ensemble of %d", truth->form->kind,
+                 truth->reference.horizon * model->step, truth->path_count);
     return status;
 }
 
 double ck_truth_uncertainty(const ck_Truth *truth, const ck_Model *model, const ck_Metric *metric) {
     double value = ck_metric_truth(metric, model, &truth->reference);
     if (isnan(value)) return NAN;
-    double spread = fmax(DBL_EPSILON * fmax(1, fabs(value)), truth->off);
-    // a path of one frame has no whole-run metrics
-    for (int i = 1; i < truth->path_count && (metric->at || !truth->reference.is_static); i++) {
+    // what a form is off in positions it is, as a share, in what is read off them
+    double spread = fmax(DBL_EPSILON, truth->off) * fmax(strcmp(metric->unit, "1") ? 0 : 1, fabs(value));
+    if (metric->unsure) spread = fmax(spread, metric->unsure(model, &truth->reference.trajectory));
+    bool is_ensemble = truth->form->solve && !truth->reference.is_static && truth->path_count > 2;
+    for (int i = 1; i < truth->path_count; i++) {
+        // a path of one frame has no whole-run metrics
+        if (!metric->at && truth->reference.is_static) continue;
+        if (is_ensemble && metric->to_horizon && i > 1) continue;
         double other = ck_metric_value(metric, model, &truth->paths[i], &truth->reference);
-        if (!isnan(other)) spread = fmax(spread, fabs(other - value));
+        if (!isnan(other)) spread = fmax(spread, (is_ensemble && !metric->to_horizon ? 2 : 1) * fabs(other - value));
     }
     return spread;
 }

@@ -20,15 +20,17 @@ typedef struct ck_TruthForm {
     // Writes the state at time s: [3*n] m, [3*n] m/s. A static form ignores time.
     // Errors: CK_BAD_INPUT where the model is not what the formula is for; the message says what it needs.
     ck_Status (*at)(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
-    // How far the formula itself is off, in units of size: a linear theory has an amplitude. NULL: it is exact.
+    // How far the formula itself is off, in units of size. NULL: it is exact.
     double (*off)(const ck_Model *model);
+    // It is of small motions: where the scene can be integrated, that says how far it is off, in place of off.
+    bool is_linear;
 
     // Fills paths, path_count and the reference's horizon. Errors: CK_REFUSED where there is no such truth,
     // CK_NO_MEMORY.
     ck_Status (*solve)(struct ck_Truth *truth, const ck_Model *model, ck_Error *error);
 } ck_TruthForm;
 
-#define CK_TRUTH_MAX_PATHS 5
+#define CK_TRUTH_MAX_PATHS 8
 
 typedef struct ck_Truth {
     const ck_TruthForm *form; // NULL: the scene has none
@@ -55,7 +57,9 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error);
 // case.
 ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error);
 
-// The spread of a metric over all paths of the truth, in the metric's unit; NaN where the metric has no truth.
+// How far the truth's value of a metric may be off, in the metric's unit: the spread over all paths of the truth,
+// where a metric reads beyond the horizon twice the largest distance in an ensemble, and what reading it off frames
+// costs. NaN where the metric has no truth.
 double ck_truth_uncertainty(const ck_Truth *truth, const ck_Model *model, const ck_Metric *metric);
 
 // Accepts a zeroed truth.

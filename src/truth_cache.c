@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 // Changes whenever a truth of the same model would come out different, or the layout does.
-#define FORMAT "clothcheck truth 1\n\0\0\0\0"
+#define FORMAT "clothcheck truth 2\n\0\0\0\0"
 
 typedef struct Header {
     char format[24];
@@ -49,9 +49,10 @@ static bool is_header_sound(const Header *header, const ck_Truth *truth, const c
                  header->model == ck_truth_cache_hash(model) && header->particle_count == model->particle_count &&
                  header->path_count >= 1 && header->path_count <= CK_TRUTH_MAX_PATHS;
     int most = truth->form->is_static ? 1 : model->frame_count + 1;
-    for (int i = 0; sound && i < header->path_count; i++)
-        sound = header->frame_counts[i] >= 1 && header->frame_counts[i] <= most;
-    return sound && header->horizon >= 0 && header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
+    for (int i = 0; sound && i < CK_TRUTH_MAX_PATHS; i++)
+        sound = i < header->path_count ? header->frame_counts[i] >= 1 && header->frame_counts[i] <= most
+                                       : !header->frame_counts[i];
+    return sound && !header->unused && header->horizon >= 0 && header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
 }
 
 // Reads the paths and holds them against the header's hash, and an equilibrium against its own forces.

@@ -1,6 +1,7 @@
 #include "truth_contact.h"
 
 #include "collider.h"
+#include "springs.h"
 #include "truth_forms.h"
 #include "vector.h"
 
@@ -17,7 +18,7 @@ typedef struct Contact {
 // False where there is not one collider of that shape, or the body has pins, drag, strain, or is not level on a plane.
 static bool read_contact(Contact *contact, const ck_Model *model, ck_ColliderShape shape) {
     bool fits = model->collider_count == 1 && model->colliders[0].shape == shape && !model->pin_count &&
-                !(model->terms & CK_TERM_DRAG) && ck_truth_starts_at_rest_lengths(model);
+                !(model->terms & CK_TERM_DRAG) && ck_springs_start_at_rest(model);
     if (!fits) return false;
     contact->collider = &model->colliders[0];
     contact->gap = ck_collider_gap(contact->collider, model->position, contact->normal);

@@ -1,5 +1,6 @@
 #include "truth_forms.h"
 
+#include "springs.h"
 #include "vector.h"
 
 #include <string.h>
@@ -28,18 +29,9 @@ bool ck_truth_is_even_chain(const ck_Model *model) {
     return true;
 }
 
-bool ck_truth_starts_at_rest_lengths(const ck_Model *model) {
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        double length = ck_distance(model->position + 3 * spring->a, model->position + 3 * spring->b);
-        if (fabs(length - spring->rest) > 1e-12 * spring->rest) return false;
-    }
-    return true;
-}
-
 bool ck_truth_is_falling(const ck_Model *model) {
     bool falling = !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE)) &&
-                   ck_truth_starts_at_rest_lengths(model);
+                   ck_springs_start_at_rest(model);
     // springs have nothing to do only where all particles are pushed alike
     double first[3], field[3];
     ck_model_field(model, 0, first);

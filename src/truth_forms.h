@@ -23,9 +23,6 @@ bool ck_truth_is_chain(const ck_Model *model);
 // True for a chain whose springs are alike and start in one straight line.
 bool ck_truth_is_even_chain(const ck_Model *model);
 
-// True where no spring is strained at the start.
-bool ck_truth_starts_at_rest_lengths(const ck_Model *model);
-
 // True without pins and colliders, and with springs that start at rest: nothing but field and drag moves it.
 bool ck_truth_is_falling(const ck_Model *model);
 

@@ -1,5 +1,6 @@
 #include "truth_modes.h"
 
+#include "springs.h"
 #include "stability.h"
 #include "truth_forms.h"
 #include "vector.h"
@@ -87,7 +88,7 @@ ck_Status ck_truth_longitudinal_modes(const ck_Model *model, double time, double
                                       ck_Error *error) {
     bool fits = ck_truth_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && !has_field(model) &&
                 has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) && velocity_along(model) > 1 - 1e-12 &&
-                model->particle_count <= MAX_MODES && ck_truth_starts_at_rest_lengths(model) && is_gentle(model);
+                model->particle_count <= MAX_MODES && ck_springs_start_at_rest(model) && is_gentle(model);
     ck_Status status = ck_truth_need(fits, model, error,
                                      "a straight rope of at most 1000 equal springs and masses, pinned at its first "
                                      "particle, thrown along itself so gently that no spring turns over, and no other "
@@ -178,11 +179,57 @@ static double laguerre_shape(int n, int particle, double parameter) {
     return laguerre(n - particle, parameter);
 }
 
+// Links keep their length: one that leans by d sideways is d²/2l less deep, to second order. So its energy is what the
+// modes' is.
+static void lift(const ck_Model *model, double *position, double *velocity) {
+    double along[3], rise = 0, rate = 0;
+    ck_subtract(along, model->position + 3, model->position);
+    for (int axis = 0; axis < 3; axis++) along[axis] /= model->spacing;
+    for (int i = 1; i < model->particle_count; i++) {
+        double lean[3], turn[3];
+        ck_subtract(lean, position + 3 * i, position + 3 * i - 3);
+        ck_subtract(turn, velocity + 3 * i, velocity + 3 * i - 3);
+        // what is above has been lifted already
+        ck_tangential(lean, lean, along);
+        ck_tangential(turn, turn, along);
+        rise += ck_dot(lean, lean) / (2 * model->spacing);
+        rate += ck_dot(lean, turn) / model->spacing;
+        ck_add_scaled(position + 3 * i, -rise, along);
+        ck_add_scaled(velocity + 3 * i, -rate, along);
+    }
+}
+
+// Springs that start at rest length bounce about their stretch under the weight below, in the longitudinal modes.
+static void add_bounce(const ck_Model *model, double time, double *position, double *velocity) {
+    const int n = model->particle_count - 1;
+    const ck_Spring *spring = &model->springs[0];
+    double along[3], weight = model->mass[0] * ck_length(model->gravity);
+    ck_subtract(along, model->position + 3, model->position);
+    for (int axis = 0; axis < 3; axis++) along[axis] /= model->spacing;
+    for (int j = 1; j <= n; j++) {
+        double parameter = (2 * j - 1) * pi / (2 * n + 1), rest = 0, norm = 0, q, rate;
+        double frequency = 2 * sqrt(spring->stiffness / model->mass[0]) * sin(0.5 * parameter);
+        double decay = 0.5 * (model->drag + spring->damping / spring->stiffness * frequency * frequency);
+        for (int i = 1; i <= n; i++) {
+            double shape = sine_shape(n, i, parameter);
+            rest += shape * weight * (i * (double)n - 0.5 * i * (i - 1.0)) / spring->stiffness;
+            norm += shape * shape;
+        }
+        // let go from −rest: the step response is rest·(1 − q' − 2·decay·q) of the unit impulse response q
+        ring(&(Mode){sine_shape, parameter, frequency, decay}, 1, time, &q, &rate);
+        for (int i = 1; i <= n; i++) {
+            double share = sine_shape(n, i, parameter) * rest / norm;
+            ck_add_scaled(position + 3 * i, share * (1 - rate - 2 * decay * q), along);
+            ck_add_scaled(velocity + 3 * i, share * frequency * frequency * q, along);
+        }
+    }
+}
+
 ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *position, double *velocity,
                                  ck_Error *error) {
     double along[3], g = ck_length(model->gravity);
     bool fits = ck_truth_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && has_equal_masses(model) &&
-                model->particle_count <= 61 && ck_truth_starts_at_rest_lengths(model) && g > 0 &&
+                model->particle_count <= 61 && ck_springs_start_at_rest(model) && g > 0 &&
                 velocity_along(model) < 1e-12 &&
                 !(model->terms & (CK_TERM_FORCE | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE));
     if (fits) {
@@ -201,6 +248,8 @@ ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *pos
         add_mode(model, &(Mode){laguerre_shape, zero, sqrt(g / model->spacing * zero), 0.5 * model->drag}, time,
                  position, velocity);
     }
+    lift(model, position, velocity);
+    if (!(model->terms & CK_TERM_RIGID)) add_bounce(model, time, position, velocity);
     return CK_OK;
 }
 
@@ -242,7 +291,7 @@ ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position
            length = model->spring_count ? model->springs[0].rest : 1, start = 0;
     bool fits = model->particle_count == 2 && model->spring_count == 1 && model->pinned[0] && !model->pinned[1] &&
                 g > 0 && (model->terms & CK_TERM_RIGID) && !(model->terms & others) &&
-                ck_truth_starts_at_rest_lengths(model);
+                ck_springs_start_at_rest(model);
     if (fits) {
         ck_subtract(bar, model->position + 3, model->position);
         for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;

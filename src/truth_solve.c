@@ -9,6 +9,7 @@
 // Starts are nudged by up to this share of the spacing: enough to leave a saddle, too little to choose a basin by
 // itself.
 #define NUDGE 1e-3
+#define STARTS 4
 
 // Adds a path of a single frame at rest.
 static ck_Status add_position(ck_Truth *truth, const ck_Model *model, const double *position, ck_Error *error) {
@@ -29,7 +30,7 @@ static ck_Status add_end_of_release(ck_Truth *truth, const ck_Model *model, ck_E
     ck_Status status = ck_stability_frequency(model, &frequency);
     // damping narrows the stable range of 2.78/ω
     double limit = 1 / (frequency + frequency * frequency * ck_stability_damping_time(model) + model->drag);
-    if (!status) status = ck_reference_integrate(&release, model, (int)ck_stability_substeps(model, limit), 0, error);
+    if (!status) status = ck_reference_integrate(&release, model, (int)ck_stability_substeps(model, limit), 0, 0, error);
     if (!status && release.frame_count > model->frame_count)
         status = add_position(truth, model, ck_trajectory_position(&release, model->frame_count), error);
     ck_trajectory_free(&release);
@@ -39,7 +40,7 @@ static ck_Status add_end_of_release(ck_Truth *truth, const ck_Model *model, ck_E
 // The release as it is, then nudged. Those that end on a saddle are left out: they are no rest position.
 ck_Status ck_truth_solve_equilibrium(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
     ck_Status status = CK_OK, found = CK_OK;
-    for (uint64_t seed = 0; seed < CK_TRUTH_MAX_PATHS - 1 && !status; seed++) {
+    for (uint64_t seed = 0; seed < STARTS && !status; seed++) {
         ck_Equilibrium equilibrium;
         found = ck_equilibrium_release(&equilibrium, model, seed ? NUDGE * model->spacing : 0, seed, error);
         if (!found) status = add_position(truth, model, equilibrium.position, error);
@@ -61,5 +62,10 @@ ck_Status ck_truth_solve_trajectory(ck_Truth *truth, const ck_Model *model, ck_E
     truth->paths[1] = path.coarse;
     truth->path_count = 2;
     truth->reference.horizon = path.horizon;
-    return CK_OK;
+    // beyond the horizon two paths say little of how far any two are apart: more are drawn, all as good
+    for (uint64_t seed = 1; path.horizon < model->frame_count && truth->path_count < CK_TRUTH_MAX_PATHS && !status;
+         seed++)
+        status = ck_reference_integrate(&truth->paths[truth->path_count++], model, path.substeps / 2,
+                                        CK_REFERENCE_NUDGE * model->size, seed, error);
+    return status;
 }

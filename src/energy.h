@@ -1,0 +1,33 @@
+// The mechanical energy of a body along its path, and the balance of it: what no engine may gain, nor lose beyond the
+// scene's own damping.
+#ifndef CK_ENERGY_H
+#define CK_ENERGY_H
+
+#include "model.h"
+#include "trajectory.h"
+
+// In J. elastic is by the scene's k, and 0 for rigid bars; field is counted from the start.
+typedef struct ck_Energy {
+    double kinetic, elastic, field;
+} ck_Energy;
+
+// Cost: one pass over particles and springs.
+ck_Energy ck_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame);
+
+double ck_energy_total(const ck_Energy *energy);
+
+// The energy that the body turns over, in J: what it starts with, the largest drop of its potential, or, where it
+// starts without speed, field·mass·size. At least that of a millionth of its size per second: below is rounding.
+double ck_energy_scale(const ck_Model *model, const ck_Trajectory *trajectory);
+
+// By how much kinetic and field energy exceed at most all the energy there was, / scale; 0 where they never do. A bound
+// that holds whatever stiffness an engine really has: energy in springs is never negative. Rigid bars that start off
+// their length have no energy at the start: then the first tenth of the run counts as the start.
+double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *trajectory);
+
+// The largest |energy + energy taken by drag and spring damping − energy at the start|, / scale. The damping is
+// summed over frames by the trapezoidal rule; its own error, told from sums over every second frame, is taken off. A
+// scene that loses energy in other ways (impacts, friction, bars that pull taut) is only charged for what it gains.
+double ck_energy_drift(const ck_Model *model, const ck_Trajectory *trajectory);
+
+#endif
