@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <new>
 #include <numeric>
 
 extern "C" const char *ck_bullet_version(void) {
@@ -15,21 +14,33 @@ extern "C" const char *ck_bullet_version(void) {
     return text;
 }
 
-ck_BulletScene::ck_BulletScene(const ck_Model *scene)
-    : now(*scene), position(scene->position, scene->position + 3 * scene->particle_count),
-      velocity(scene->velocity, scene->velocity + 3 * scene->particle_count),
-      pinned(std::make_unique<bool[]>(scene->particle_count)) {
-    std::copy(scene->pinned, scene->pinned + scene->particle_count, pinned.get());
-    now.position = position.data();
-    now.velocity = velocity.data();
-    now.pinned = pinned.get();
+ck_BulletModel::ck_BulletModel(const ck_Model *scene) : scaled() {
+    if (ck_scaled_model_create(&scaled, scene)) throw std::bad_alloc();
 }
 
-void ck_BulletScene::release(const double *at, const double *speed, int particle) {
-    std::copy(at, at + position.size(), position.begin());
-    std::copy(speed, speed + velocity.size(), velocity.begin());
-    std::fill_n(velocity.begin() + 3 * particle, 3, 0.0);
-    pinned[particle] = false;
+ck_BulletModel::~ck_BulletModel() {
+    ck_scaled_model_free(&scaled);
+}
+
+void ck_BulletModel::release(const double *at, const double *speed, int particle) {
+    ck_Model &now = scaled.model;
+    for (int i = 0; i < 3 * now.particle_count; i++) {
+        now.position[i] = at[i] / scaled.length;
+        now.velocity[i] = speed[i] / scaled.length;
+    }
+    std::fill_n(now.velocity + 3 * particle, 3, 0.0);
+    now.pinned[particle] = false;
+}
+
+ck_BulletLinks ck_BulletLinkTable::view() {
+    return {static_cast<int>(start.size()) - 1,
+            start.data(),
+            other.data(),
+            rest.data(),
+            stiffness.data(),
+            damping.data(),
+            normal.data(),
+            length.data()};
 }
 
 static btVector3 vector_at(const double *values, int index) {
@@ -58,6 +69,30 @@ static void add_links(ck_BulletBody &body, bool reordered) {
     }
 }
 
+// Sorted by counting.
+static void fill_table(ck_BulletBody &body) {
+    ck_BulletLinkTable &table = body.links;
+    const btSoftBody &soft = *body.soft;
+    const int links = soft.m_links.size();
+    auto index = [&](int link, int end) { return static_cast<int>(soft.m_links[link].m_n[end] - &soft.m_nodes[0]); };
+    table.start.assign(soft.m_nodes.size() + 1, 0);
+    for (int i = 0; i < links; i++) table.start[index(i, 0) + 1]++;
+    std::partial_sum(table.start.begin(), table.start.end(), table.start.begin());
+    std::vector<int> next(table.start);
+    table.other.resize(links);
+    table.link.resize(links);
+    for (auto *values : {&table.rest, &table.stiffness, &table.damping, &table.length}) values->resize(links);
+    table.normal.assign(4 * static_cast<size_t>(links), 0);
+    for (int i = 0; i < links; i++) {
+        const int at = next[index(i, 0)]++;
+        table.other[at] = index(i, 1);
+        table.link[at] = i;
+        table.rest[at] = body.spring[i]->rest;
+        table.stiffness[at] = body.spring[i]->stiffness;
+        table.damping[at] = body.spring[i]->damping;
+    }
+}
+
 void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, bool reordered,
                           btSoftBodyWorldInfo *info) {
     body.model = model;
@@ -76,18 +111,25 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
         }
     body.soft = std::make_unique<btSoftBody>(info, model->particle_count, position.data(), mass.data());
     add_links(body, reordered);
+    fill_table(body);
     for (int i = 0; i < model->particle_count; i++) {
         btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
         node.m_v = node.m_vn = vector_at(model->velocity, i);
     }
 }
 
-void ck_bullet_body_read(const ck_BulletBody &body, double *position, double *velocity) {
+ck_BulletNodes ck_bullet_nodes(const ck_BulletBody &body, btVector3 btSoftBody::Node::*position) {
+    static_assert(sizeof(btSoftBody::Node) % sizeof(double) == 0, "nodes are whole doubles apart");
+    const btSoftBody::Node &first = body.soft->m_nodes[0];
+    return {&(first.*position)[0], &first.m_v[0], sizeof first / sizeof(double)};
+}
+
+void ck_bullet_body_read(const ck_BulletBody &body, double length, double *position, double *velocity) {
     for (int i = 0; i < body.model->particle_count; i++) {
         const btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
         for (int axis = 0; axis < 3; axis++) {
-            position[3 * i + axis] = node.m_x[axis];
-            velocity[3 * i + axis] = node.m_v[axis];
+            position[3 * i + axis] = length * node.m_x[axis];
+            velocity[3 * i + axis] = length * node.m_v[axis];
         }
     }
 }
@@ -110,6 +152,13 @@ static void ledger_contact(ck_Ledger *ledger, const ck_Model *model, const char 
 
 void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,
                       const char *friction_formula) {
+    ck_ScaledModel scaled;
+    if (!ck_scaled_model_create(&scaled, model)) {
+        const char *formula = "a power of two: Bullet sees every body as one of its own units; native values are in SI";
+        ck_ledger_add(ledger, {"length", 1, "m", "unit", 1 / scaled.length, formula, CK_EXACT});
+        ck_ledger_add(ledger, {"mass", 1, "kg", "unit", 1 / scaled.mass, formula, CK_EXACT});
+        ck_scaled_model_free(&scaled);
+    }
     ck_ledger_add(ledger,
                   {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
     ck_ledger_add(ledger,

@@ -2,39 +2,55 @@
 #ifndef CK_BULLET_BODY_HPP
 #define CK_BULLET_BODY_HPP
 
+#include "bullet_loops.h"
 #include "engine.h"
+#include "scaled_model.h"
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <memory>
+#include <new>
 #include <vector>
 
 static_assert(sizeof(btScalar) == 8, "Bullet must be built in double precision: link bullet-float64");
 
-// A model whose pins can be let go: what a world is built from again when they are.
-class ck_BulletScene {
+// A model in units of its own, whose pins can be let go: what a world is built from again when they are.
+class ck_BulletModel {
   public:
-    explicit ck_BulletScene(const ck_Model *scene);
+    explicit ck_BulletModel(const ck_Model *scene);
+    ~ck_BulletModel();
+    ck_BulletModel(const ck_BulletModel &) = delete;
+    ck_BulletModel &operator=(const ck_BulletModel &) = delete;
     const ck_Model *model() const {
-        return &now;
+        return &scaled.model;
     }
-    // Goes on from that state, with one pin less, at rest.
+    double length() const {
+        return scaled.length;
+    }
+    // Goes on from that state, [3*n] m and m/s of the scene, with one pin less, at rest.
     void release(const double *at, const double *speed, int particle);
 
   private:
-    ck_Model now;
-    std::vector<double> position, velocity;
-    std::unique_ptr<bool[]> pinned;
+    ck_ScaledModel scaled;
+};
+
+// The springs of a body sorted by their first ends, for the passes that the bridge adds.
+struct ck_BulletLinkTable {
+    std::vector<int> start, other;
+    std::vector<int> link; // of the soft body, that each of them is
+    std::vector<double> rest, stiffness, damping, normal, length;
+    ck_BulletLinks view();
 };
 
 struct ck_BulletBody {
-    const ck_Model *model;
-    double dt; // s, one substep
+    const ck_Model *model; // in units of its own
+    double dt;             // s, one substep
     uint32_t substeps;
     std::unique_ptr<btSoftBody> soft;
     std::vector<int>
         node_of_particle; // pinned particles come last, as the contact solver of the deformable world needs
     std::vector<int> particle_of_node;
     std::vector<const ck_Spring *> spring; // of each link
+    ck_BulletLinkTable links;
 };
 
 //   reordered  links in the order in which native sweeps over rows, in which neighbours do not wait for each other
@@ -42,16 +58,32 @@ struct ck_BulletBody {
 void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, bool reordered,
                           btSoftBodyWorldInfo *info);
 
-// Position and velocity in the model's particle order: [3*n] m, [3*n] m/s.
-void ck_bullet_body_read(const ck_BulletBody &body, double *position, double *velocity);
+// Positions and velocities of all nodes. position: which of a node's, m_x or m_q.
+ck_BulletNodes ck_bullet_nodes(const ck_BulletBody &body, btVector3 btSoftBody::Node::*position);
+
+// Position and velocity in the scene's particle order and units: [3*n] m, [3*n] m/s. length: of a unit, m.
+void ck_bullet_body_read(const ck_BulletBody &body, double length, double *position, double *velocity);
 
 // False where any node has left the finite numbers, or what Bullet can clamp them to.
 bool ck_bullet_body_is_finite(const ck_BulletBody &body);
 
-// Adds the rows that both worlds fill alike: time step, mass, gravity, force, contact.
+// Adds the rows that both worlds fill alike: units, time step, mass, gravity, force, contact.
 //   force_parameter  where the world takes the force;  friction_formula  what it makes of friction
 void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,
                       const char *friction_formula);
+
+// Calls work, and turns what it throws into a status: nothing that Bullet or the library throws may reach C.
+template <typename Work> ck_Status ck_bullet_guarded(ck_Error *error, Work work) noexcept {
+    try {
+        return work();
+    } catch (const std::bad_alloc &) {
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    } catch (const std::exception &thrown) {
+        return ck_fail(error, CK_REFUSED, "Bullet's bridge: %s", thrown.what());
+    } catch (...) {
+        return ck_fail(error, CK_REFUSED, "Bullet's bridge: an exception of unknown kind");
+    }
+}
 
 extern "C" const char *ck_bullet_version(void);
 

@@ -1,31 +1,34 @@
 #include "bullet_contact.hpp"
 
-#include "vector.h"
-
 double ck_bullet_margin(const ck_Model *model) {
-    double margin = btMin(0.01, 0.1 * model->spacing);
+    double margin = 0.1 * model->spacing;
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].shape == CK_SPHERE) margin = btMin(margin, 0.1 * model->colliders[i].radius);
     return margin;
 }
 
-// The farthest that the body can get from a point of a plane, m: what the box must reach.
-static double reach_of(const ck_Model *model, const ck_Collider &collider) {
-    double field[3], farthest = 0, fastest = 0, time = model->duration;
-    ck_model_mean_field(model, field);
-    for (int i = 0; i < model->particle_count; i++) {
-        farthest = btMax(farthest, ck_distance(model->position + 3 * i, collider.point));
-        fastest = btMax(fastest, ck_length(model->velocity + 3 * i));
-    }
-    return 2 * (farthest + model->size + fastest * time + 0.5 * ck_length(field) * time * time);
-}
+// Half the side of the box that stands for a plane, in units of the model, of which the body is one or two long: it is
+// there wherever the body is. Bullet's distance test fails in boxes of some thousands.
+const double half_side = 16;
+// How far the body may get from the middle of the box before it is moved.
+const double half_side_left = 4;
 
-static btTransform place_plane(const ck_Collider &collider, double reach, double margin) {
+static btTransform place_plane(const ck_Collider &collider, const btVector3 &middle, double margin) {
     btVector3 normal(collider.normal[0], collider.normal[1], collider.normal[2]);
     btVector3 point(collider.point[0], collider.point[1], collider.point[2]);
     btTransform place(shortestArcQuat(btVector3(0, 1, 0), normal));
-    place.setOrigin(point - normal * (reach + margin));
+    btVector3 above = middle - point;
+    place.setOrigin(point + (above - normal * above.dot(normal)) - normal * (half_side + margin));
     return place;
+}
+
+static btVector3 middle_of(const ck_BulletBody &body) {
+    btVector3 low = body.soft->m_nodes[0].m_x, high = low;
+    for (int i = 1; i < body.soft->m_nodes.size(); i++) {
+        low.setMin(body.soft->m_nodes[i].m_x);
+        high.setMax(body.soft->m_nodes[i].m_x);
+    }
+    return (low + high) * 0.5;
 }
 
 void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info) {
@@ -38,12 +41,11 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
         btTransform place(btQuaternion::getIdentity(),
                           btVector3(collider.point[0], collider.point[1], collider.point[2]));
         if (collider.shape == CK_PLANE) {
-            double reach = reach_of(model, collider);
-            shapes.push_back(std::make_unique<btBoxShape>(btVector3(reach, reach, reach)));
-            place = place_plane(collider, reach, margin);
+            shapes.push_back(std::make_unique<btBoxShape>(btVector3(half_side, half_side, half_side)));
+            place = place_plane(collider, middle_of(body), margin);
         } else {
             shapes.push_back(std::make_unique<btSphereShape>(collider.radius - margin));
-            // a grid this fine is off by some 1e-4 of the radius
+            // a grid this fine is off by some 1e-4 of the radius; of a box any is exact
             voxel = btMin(voxel, collider.radius / 60);
         }
         btRigidBody::btRigidBodyConstructionInfo construction(0, nullptr, shapes.back().get());
@@ -56,6 +58,19 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
     }
     info.m_sparsesdf.setDefaultVoxelsz(voxel);
     info.m_sparsesdf.Reset();
+}
+
+void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body) {
+    const btVector3 middle = middle_of(body);
+    for (auto &plane : bodies) {
+        const ck_Collider &collider = of(body.model, plane.get());
+        if (collider.shape != CK_PLANE) continue;
+        btTransform place = place_plane(collider, middle, ck_bullet_margin(body.model));
+        if (!((place.getOrigin() - plane->getWorldTransform().getOrigin()).length() > half_side_left)) continue;
+        plane->setWorldTransform(place);
+        plane->setInterpolationWorldTransform(place);
+        world.updateSingleAabb(plane.get());
+    }
 }
 
 void ck_BulletColliders::remove(btDiscreteDynamicsWorld &world) {

@@ -9,9 +9,11 @@
 class ck_BulletColliders {
   public:
     // Adds a body for each collider to a world and sets the soft body's margin and the grid of its distances. A plane
-    // is a big box (Bullet's static plane lets soft bodies through), a ball shrinks and a plane sinks by the margin, at
+    // is a box (Bullet's static plane lets soft bodies through), a ball shrinks and a plane sinks by the margin, at
     // which Bullet lets nodes rest.
     void add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info);
+    // Before a frame: the boxes that stand for planes go where the body is, along their planes.
+    void follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body);
     // Takes them out again: the world owns nothing.
     void remove(btDiscreteDynamicsWorld &world);
 

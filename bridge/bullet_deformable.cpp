@@ -22,6 +22,7 @@ class World : public btDeformableMultiBodyDynamicsWorld {
   public:
     using btDeformableMultiBodyDynamicsWorld::btDeformableMultiBodyDynamicsWorld;
     const ck_BulletBody *body = nullptr;
+    bool was_clamped = false; // a speed, by Bullet, to what crosses the body's bounding box in a step
 
     // stepSimulation would only wrap profiling and interpolation around this
     void step_once(btScalar dt) {
@@ -33,6 +34,15 @@ class World : public btDeformableMultiBodyDynamicsWorld {
     }
 
   protected:
+    void predictUnconstraintMotion(btScalar dt) override {
+        btDeformableMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
+        // Bullet has just scaled back what is faster than the bounds that it took then
+        const btSoftBody &soft = *body->soft;
+        double most = (soft.m_bounds[1] - soft.m_bounds[0]).length2() / (dt * dt) * (1 - 1e-9);
+        for (int i = 0; i < soft.m_nodes.size() && !is_implicit && !was_clamped; i++)
+            was_clamped = soft.m_nodes[i].m_v.length2() >= most;
+    }
+
     // between the solve, after which a node in contact has lost its speed into the surface, and the motion
     void integrateTransforms(btScalar dt) override {
         for (int i = 0; i < body->soft->m_nodeRigidContacts.size(); i++)
@@ -42,10 +52,16 @@ class World : public btDeformableMultiBodyDynamicsWorld {
 
   private:
     std::vector<btVector3> speed_before;
+
+  public:
+    bool is_implicit = true;
+
+  private:
     void rebound(const btSoftBody::DeformableNodeRigidContact &contact, btScalar dt);
 };
 
-// Restitution, with the friction that its impulse adds: Bullet's own is that of an impact that stops.
+// Restitution and its friction. Bullet's own friction is that of an impact that stops, of which its explicit world, which
+// looks ahead, only sees the part that is too fast to reach the surface: it is left out.
 void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btScalar dt) {
     const ck_Collider &collider = ck_BulletColliders::of(body->model, contact.m_cti.m_colObj);
     if (!(collider.restitution > 0)) return;
@@ -57,9 +73,10 @@ void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btSca
     // what cannot be told from rest
     if (speed <= 2 * btFabs(pull) * dt) return;
     double leaving = ck_collider_rebound(collider.restitution, -gap, speed, pull, dt);
-    btVector3 along = node.m_v - normal * node.m_v.dot(normal);
+    btVector3 before = speed_before[node.index] + ck_bullet_field(*body, body->particle_of_node[node.index]) * dt;
+    btVector3 along = before - normal * before.dot(normal);
     double sliding = along.length();
-    if (sliding > 0) along *= 1 - btMin(1.0, collider.friction * leaving / sliding);
+    if (sliding > 0) along *= 1 - btMin(1.0, collider.friction * (speed + leaving) / sliding);
     node.m_v = along + normal * leaving;
 }
 
@@ -92,10 +109,12 @@ struct Deformable {
 };
 
 struct DeformableState {
-    ck_BulletScene scene;
+    ck_BulletModel scene;
     ck_Settings used;
     bool is_implicit;
-    std::unique_ptr<Deformable> now;
+    std::unique_ptr<Deformable> now; // NULL: there was no memory for it
+    DeformableState(const ck_Model *model, const ck_Settings &settings, bool implicit)
+        : scene(model), used(settings), is_implicit(implicit) {}
 };
 
 // Time step: backward Euler is stable at any, and its damping is first order: at most 1/240 s. The explicit world is
@@ -111,10 +130,15 @@ ck_Status time_step_limit(const ck_Model *model, bool is_implicit, double *limit
     return status;
 }
 
+// What a metre is to Bullet, in m: its default margin is a quarter of that.
+double unit_of(const ck_Model *model) {
+    return std::ldexp(1, std::ilogb(model->size));
+}
+
 // The explicit world clamps speeds to the body's bounding box, margins and all, per step.
 void ledger_speed(const ck_Model *model, const ck_Settings &used, ck_Ledger *ledger) {
     btVector3 low(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT), high = -low;
-    double fastest = 0, margin = model->collider_count ? ck_bullet_margin(model) : 0.25;
+    double fastest = 0, margin = model->collider_count ? ck_bullet_margin(model) : 0.25 * unit_of(model);
     for (int i = 0; i < model->particle_count; i++) {
         const double *at = model->position + 3 * i, *speed = model->velocity + 3 * i;
         low.setMin(btVector3(at[0], at[1], at[2]));
@@ -171,6 +195,7 @@ std::unique_ptr<Deformable> build_world(const ck_Model *model, const ck_Settings
                                            &state->configuration, &state->solver);
     World &world = *state->world;
     world.body = &state->body;
+    world.is_implicit = is_implicit;
     // without projection the implicit world reads out of bounds, and nothing moves
     world.setImplicit(is_implicit);
     world.setUseProjection(true);
@@ -187,7 +212,7 @@ std::unique_ptr<Deformable> build_world(const ck_Model *model, const ck_Settings
     soft->m_cfg.collisions = btSoftBody::fCollision::SDF_RD | btSoftBody::fCollision::SDF_RDN;
     soft->setActivationState(DISABLE_DEACTIVATION); // else it freezes below 0.04 m/s
     world.addSoftBody(soft);
-    state->springs = std::make_unique<ck_BulletSprings>(state->body);
+    state->springs = std::make_unique<ck_BulletSprings>(state->body, is_implicit);
     world.addForce(soft, state->springs.get());
     // always there: the implicit world reads it even where there is no gravity
     state->gravity = std::make_unique<btDeformableGravityForce>(gravity);
@@ -196,15 +221,15 @@ std::unique_ptr<Deformable> build_world(const ck_Model *model, const ck_Settings
 }
 
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
-                 ck_Error *error, bool is_implicit) try {
-    ck_Status status = translate(model, wanted, used, ledger, is_implicit);
-    if (status) return ck_fail(error, status, "out of memory");
-    auto state = std::make_unique<DeformableState>(DeformableState{ck_BulletScene(model), *used, is_implicit, nullptr});
-    state->now = build_world(state->scene.model(), *used, is_implicit);
-    *out = state.release();
-    return CK_OK;
-} catch (const std::bad_alloc &) {
-    return ck_fail(error, CK_NO_MEMORY, "out of memory");
+                 ck_Error *error, bool is_implicit) {
+    return ck_bullet_guarded(error, [&] {
+        ck_Status status = translate(model, wanted, used, ledger, is_implicit);
+        if (status) throw std::bad_alloc();
+        auto state = std::make_unique<DeformableState>(model, *used, is_implicit);
+        state->now = build_world(state->scene.model(), *used, is_implicit);
+        *out = state.release();
+        return CK_OK;
+    });
 }
 
 ck_Status create_implicit(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
@@ -218,22 +243,41 @@ ck_Status create_explicit(void **out, const ck_Model *model, const ck_Settings *
 }
 
 ck_StepResult step(void *out) {
-    Deformable &state = *static_cast<DeformableState *>(out)->now;
-    for (uint32_t i = 0; i < state.body.substeps; i++) state.world->step_once(state.body.dt);
+    DeformableState &all = *static_cast<DeformableState *>(out);
+    if (!all.now) return CK_STEP_NO_MEMORY;
+    Deformable &state = *all.now;
+    ck_Status status = ck_bullet_guarded(nullptr, [&] {
+        state.colliders.follow(*state.world, state.body);
+        for (uint32_t i = 0; i < state.body.substeps; i++) state.world->step_once(state.body.dt);
+        return CK_OK;
+    });
+    if (status) return CK_STEP_NO_MEMORY;
     return ck_bullet_body_is_finite(state.body) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
-void read_state(const void *state, double *position, double *velocity) {
-    ck_bullet_body_read(static_cast<const DeformableState *>(state)->now->body, position, velocity);
+void read_state(const void *out, double *position, double *velocity) {
+    const DeformableState &state = *static_cast<const DeformableState *>(out);
+    if (state.now) ck_bullet_body_read(state.now->body, state.scene.length(), position, velocity);
 }
 
 // Bullet keeps masses in many places: the world is built again.
 void release(void *out, int particle) {
     DeformableState &state = *static_cast<DeformableState *>(out);
-    std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
-    read_state(out, position.data(), velocity.data());
-    state.scene.release(position.data(), velocity.data(), particle);
-    state.now = build_world(state.scene.model(), state.used, state.is_implicit);
+    ck_Status status = ck_bullet_guarded(nullptr, [&] {
+        std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
+        read_state(out, position.data(), velocity.data());
+        state.scene.release(position.data(), velocity.data(), particle);
+        state.now = build_world(state.scene.model(), state.used, state.is_implicit);
+        return CK_OK;
+    });
+    if (status) state.now.reset();
+}
+
+const char *remark(const void *out) {
+    const DeformableState &state = *static_cast<const DeformableState *>(out);
+    return state.now && state.now->world->was_clamped
+               ? "Bullet clamped speeds to what crosses the body's bounding box in a step"
+               : nullptr;
 }
 
 void destroy(void *state) {
@@ -259,6 +303,7 @@ extern "C" const ck_Engine ck_bullet_implicit = {
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .remark = remark,
     .destroy = destroy,
 };
 
@@ -276,5 +321,6 @@ extern "C" const ck_Engine ck_bullet_explicit = {
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .remark = remark,
     .destroy = destroy,
 };

@@ -61,10 +61,15 @@ struct Classic {
     btSoftBodyWorldInfo info;
     std::unique_ptr<Surroundings> around;
     ck_BulletBody body;
-    std::vector<double> kappa_over_weight; // of each link: κ/(w_a + w_b)
-    std::vector<btVector3> field_force;    // N on each node
-    std::vector<Landing> landings;         // of this substep
-    std::vector<btVector3> tension;        // N, of the springs on each node; empty without colliders
+    const ck_BulletLoops *loops = ck_bullet_loops();
+    bool corrects;                     // to Hooke's law: springs, whose share is not the user's own
+    uint32_t substep;                  // since the start
+    uint32_t apart;                    // substeps from one damping force to the next
+    std::vector<double> of_one, least; // of each link of the table: (w_a + w_b)/κ, and κ
+    std::vector<int> slot;             // where its m_c0 is, in doubles from the first link's
+    btVector3 field_force;             // N on each node
+    std::vector<Landing> landings;     // of this substep
+    std::vector<std::vector<int>> links_of; // of each node; empty without colliders
 
     ~Classic() {
         if (!around) return;
@@ -74,9 +79,10 @@ struct Classic {
 };
 
 struct ClassicState {
-    ck_BulletScene scene;
+    ck_BulletModel scene;
     ck_Settings used;
-    std::unique_ptr<Classic> now;
+    std::unique_ptr<Classic> now; // NULL: there was no memory for it
+    ClassicState(const ck_Model *model, const ck_Settings &settings) : scene(model), used(settings) {}
 };
 
 // The share κ = kLST of a link's error that one iteration removes.
@@ -94,9 +100,15 @@ double spring_weight(const ck_Model *model, const ck_Spring &spring) {
     return ck_model_inverse_mass(model, spring.a) + ck_model_inverse_mass(model, spring.b);
 }
 
-// Time step: k·dt²/m ≤ 0.1 (k·dt²·W ≤ 0.2), where the static map is good to 1 %; rigid bars as for native-bars;
-// damping, a force before the step, takes at most half of a relative speed; drag, first order, 2 % of a speed; where
-// there is contact 1/240 s.
+// How many substeps a damping force stands for: two, which halves what it costs, but one where it would take more than a
+// relative speed. The correction to Hooke's law stands for twice as many.
+uint32_t substeps_apart(const ck_Model *model, double dt) {
+    return 2 * dt * ck_stability_damping_rate(model) > 1 ? 1 : 2;
+}
+
+// Time step: k·dt²/m ≤ 0.1 (k·dt²·W ≤ 0.2), where the static map is good to 1 %; rigid bars as for native-bars; damping,
+// a force before every second step, half of what is stable; drag, first order, 2 % of a speed; where there is contact
+// 1/240 s.
 void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     uint32_t sweeps = model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model) : 1;
     *used = ck_Settings{};
@@ -106,8 +118,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     used->reordered = wanted->reordered;
     double rate = ck_stability_stiffness_rate(model), limit = rate > 0 ? std::sqrt(0.2 / rate) : INFINITY;
     if (model->terms & CK_TERM_RIGID) limit = ck_stability_bar_time(model, used->iterations);
-    for (int i = 0; i < model->spring_count; i++)
-        limit = std::fmin(limit, 0.5 / (model->springs[i].damping * spring_weight(model, model->springs[i])));
+    limit = std::fmin(limit, 0.5 / ck_stability_damping_rate(model));
     limit = std::fmin(limit, ck_stability_drag_time(model, 0.02));
     if (model->collider_count) limit = std::fmin(limit, 1.0 / 240);
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
@@ -121,15 +132,16 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
         double value = kappa(*spring, spring_weight(model, *spring), dt, *used);
         ck_ledger_add(ledger,
                       {ck_stiffness_names[kind], spring->stiffness, "N/m", "Material::m_kLST", value,
-                       used->klst > 0 ? "as set; Link::m_c0 corrected to Hooke each step"
+                       used->klst > 0                ? "as set"
+                       : model->terms & CK_TERM_RIGID ? "1: all of a bar's error in each iteration"
                        : used->iterations == 1
-                           ? "min(1, q/(1 + q/2)), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke each step"
-                           : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke each step",
+                           ? "min(1, q/(1 + q/2)), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke"
+                           : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke",
                        CK_APPROXIMATE});
     }
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, {"spring damping", model->springs[0].damping, "N*s/m", "Node::m_f",
-                               model->springs[0].damping, "c*(dv.n) added before each step: explicit", CK_APPROXIMATE});
+                               model->springs[0].damping, "c*(dv.n) before every second step: explicit", CK_APPROXIMATE});
     if (model->terms & CK_TERM_DRAG)
         ck_ledger_add(ledger, {"drag", model->drag, "1/s", "m_cfg.kDP", 1 - 1 / (1 + model->drag * dt),
                                "1 - 1/(1 + drag*dt)", CK_APPROXIMATE});
@@ -152,6 +164,23 @@ Landing land(const ck_Collider &collider, double gap, double way_in, double pull
     return landing;
 }
 
+// N, of the springs on a node at the start of the substep; rigid bars have none that is known.
+btVector3 tension_of(const Classic &state, int index) {
+    const ck_BulletBody &body = state.body;
+    btVector3 tension(0, 0, 0);
+    for (int link : state.links_of[index]) {
+        const btSoftBody::Link &one = body.soft->m_links[link];
+        const ck_Spring &spring = *body.spring[link];
+        const btSoftBody::Node &node = body.soft->m_nodes[index];
+        const btSoftBody::Node &other = one.m_n[0] == &node ? *one.m_n[1] : *one.m_n[0];
+        btVector3 d = other.m_q - node.m_q;
+        double length = d.length();
+        if (length > 0 && std::isfinite(spring.stiffness))
+            tension += d * (spring.stiffness * (length - spring.rest) / length);
+    }
+    return tension;
+}
+
 // After detection, before links and contacts are solved: Coulomb's cone in place of a share of the speed, and nothing
 // of Bullet's hardness, which would answer to what links do to the node. Bullet then removes n·way + (1 − c3)·slip.
 void edit_contacts(btDynamicsWorld *world, btScalar dt) {
@@ -166,7 +195,7 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
         auto index = contact.m_node - &body.soft->m_nodes[0];
         btVector3 way = node.m_x - node.m_q;
         // what links will add, by their tension at the start of the substep: it presses and pulls along, too
-        btVector3 foreseen = way + state.tension[index] * (node.m_im * dt * dt);
+        btVector3 foreseen = way + tension_of(state, static_cast<int>(index)) * (node.m_im * dt * dt);
         double way_in = -way.dot(normal), press = -foreseen.dot(normal);
         double slip = (foreseen + normal * press).length();
         double gap = node.m_q.dot(normal) + contact.m_cti.m_offset;
@@ -194,7 +223,10 @@ void finish_landings(Classic &state) {
 
 void surround(Classic &state) {
     state.around = std::make_unique<Surroundings>();
-    state.tension.resize(state.body.soft->m_nodes.size());
+    state.links_of.resize(state.body.soft->m_nodes.size());
+    for (int i = 0; i < state.body.soft->m_links.size(); i++)
+        for (const btSoftBody::Node *node : state.body.soft->m_links[i].m_n)
+            state.links_of[node - &state.body.soft->m_nodes[0]].push_back(i);
     World &world = state.around->world;
     world.setGravity(state.info.m_gravity);
     state.info.m_broadphase = &state.around->broadphase;
@@ -220,79 +252,91 @@ std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
     soft.m_cfg.piterations = static_cast<int>(used.iterations);
     soft.m_cfg.kDF = 1;
     soft.m_cfg.kDP = 1 - 1 / (1 + model->drag * state->body.dt);
-    for (const ck_Spring *spring : state->body.spring) {
-        double weight = spring_weight(model, *spring);
-        state->kappa_over_weight.push_back(kappa(*spring, weight, state->body.dt, used) / weight);
+    state->corrects = !(used.klst > 0) && !(model->terms & CK_TERM_RIGID);
+    state->apart = substeps_apart(model, state->body.dt);
+    for (int link : state->body.links.link) {
+        const ck_Spring &spring = *state->body.spring[link];
+        double weight = spring_weight(model, spring), share = kappa(spring, weight, state->body.dt, used);
+        state->of_one.push_back(weight / share);
+        state->least.push_back(share);
+        state->slot.push_back(link * static_cast<int>(sizeof(btSoftBody::Link) / sizeof(double)));
+        soft.m_links[link].m_c0 = weight / share;
     }
-    state->field_force.assign(soft.m_nodes.size(), btVector3(model->force[0], model->force[1], model->force[2]));
+    state->field_force = btVector3(model->force[0], model->force[1], model->force[2]);
     if (model->collider_count) surround(*state);
     return state;
 }
 
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
-                 ck_Error *error) try {
-    translate(model, wanted, used, ledger);
-    auto state = std::make_unique<ClassicState>(ClassicState{ck_BulletScene(model), *used, nullptr});
-    state->now = build(state->scene.model(), *used);
-    *out = state.release();
-    return CK_OK;
-} catch (const std::bad_alloc &) {
-    return ck_fail(error, CK_NO_MEMORY, "out of memory");
+                 ck_Error *error) {
+    return ck_bullet_guarded(error, [&] {
+        translate(model, wanted, used, ledger);
+        auto state = std::make_unique<ClassicState>(model, *used);
+        state->now = build(state->scene.model(), *used);
+        *out = state.release();
+        return CK_OK;
+    });
 }
 
-// Before each step: Bullet's correction k·l(l² − L²)/(l² + L²) becomes Hooke's k·(l − L), and damping is added as a
-// force.
+// Before a step: Bullet's correction k·l(l² − L²)/(l² + L²) becomes Hooke's k·(l − L), but of no link more than its whole
+// error is taken, which would explode; and damping is added as a force.
 void prepare_links(Classic &state) {
+    ck_BulletBody &body = state.body;
+    btSoftBody &soft = *body.soft;
+    bool corrects = state.corrects && state.substep % (2 * state.apart) == 0;
+    bool is_damped = (body.model->terms & CK_TERM_DAMPING) && state.substep % state.apart == 0;
+    state.substep++;
+    if (!soft.m_links.size() || !(corrects || is_damped)) return;
+    const ck_BulletLinks links = body.links.view();
+    const ck_BulletNodes nodes = ck_bullet_nodes(body, &btSoftBody::Node::m_x);
+    const ck_BulletHooke hooke = {state.of_one.data(), state.least.data(), state.slot.data(), &soft.m_links[0].m_c0};
+    state.loops->prepare(&links, &nodes, &soft.m_nodes[0].m_f[0], is_damped ? state.apart : 0,
+                         corrects ? &hooke : nullptr);
+}
+
+void step_once(Classic &state) {
     btSoftBody &soft = *state.body.soft;
-    std::fill(state.tension.begin(), state.tension.end(), btVector3(0, 0, 0));
-    for (int i = 0; i < soft.m_links.size(); i++) {
-        btSoftBody::Link &link = soft.m_links[i];
-        const ck_Spring &spring = *state.body.spring[i];
-        btVector3 d = link.m_n[1]->m_x - link.m_n[0]->m_x;
-        double length = d.length(), rest = spring.rest;
-        if (state.around && length > 0 && std::isfinite(spring.stiffness)) {
-            btVector3 tension = d * (spring.stiffness * (length - rest) / length);
-            state.tension[link.m_n[0] - &soft.m_nodes[0]] += tension;
-            state.tension[link.m_n[1] - &soft.m_nodes[0]] -= tension;
-        }
-        link.m_c0 = length * (length + rest) / (length * length + rest * rest) / state.kappa_over_weight[i];
-        if (spring.damping > 0 && length > 0) {
-            btVector3 force = d * (spring.damping * d.dot(link.m_n[1]->m_v - link.m_n[0]->m_v) / (length * length));
-            link.m_n[0]->m_f += force;
-            link.m_n[1]->m_f -= force;
-        }
+    prepare_links(state);
+    if (state.body.model->terms & CK_TERM_FORCE)
+        for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force, node);
+    if (state.around) {
+        state.around->world.step_once(state.body.dt);
+        finish_landings(state);
+        return;
     }
+    soft.predictMotion(state.body.dt);
+    soft.solveConstraints();
 }
 
 ck_StepResult step(void *out) {
-    Classic &state = *static_cast<ClassicState *>(out)->now;
-    btSoftBody &soft = *state.body.soft;
-    for (uint32_t i = 0; i < state.body.substeps; i++) {
-        prepare_links(state);
-        if (state.body.model->terms & CK_TERM_FORCE)
-            for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force[node], node);
-        if (state.around) {
-            state.around->world.step_once(state.body.dt);
-            finish_landings(state);
-            continue;
-        }
-        soft.predictMotion(state.body.dt);
-        soft.solveConstraints();
-    }
+    ClassicState &all = *static_cast<ClassicState *>(out);
+    if (!all.now) return CK_STEP_NO_MEMORY;
+    Classic &state = *all.now;
+    ck_Status status = ck_bullet_guarded(nullptr, [&] {
+        if (state.around) state.around->colliders.follow(state.around->world, state.body);
+        for (uint32_t i = 0; i < state.body.substeps; i++) step_once(state);
+        return CK_OK;
+    });
+    if (status) return CK_STEP_NO_MEMORY;
     return ck_bullet_body_is_finite(state.body) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
-void read_state(const void *state, double *position, double *velocity) {
-    ck_bullet_body_read(static_cast<const ClassicState *>(state)->now->body, position, velocity);
+void read_state(const void *out, double *position, double *velocity) {
+    const ClassicState &state = *static_cast<const ClassicState *>(out);
+    if (state.now) ck_bullet_body_read(state.now->body, state.scene.length(), position, velocity);
 }
 
 // Bullet keeps masses in many places: the body is built again.
 void release(void *out, int particle) {
     ClassicState &state = *static_cast<ClassicState *>(out);
-    std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
-    read_state(out, position.data(), velocity.data());
-    state.scene.release(position.data(), velocity.data(), particle);
-    state.now = build(state.scene.model(), state.used);
+    ck_Status status = ck_bullet_guarded(nullptr, [&] {
+        std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
+        read_state(out, position.data(), velocity.data());
+        state.scene.release(position.data(), velocity.data(), particle);
+        state.now = build(state.scene.model(), state.used);
+        return CK_OK;
+    });
+    if (status) state.now.reset();
 }
 
 void destroy(void *state) {
@@ -316,5 +360,6 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .remark = nullptr,
     .destroy = destroy,
 };

@@ -1,86 +1,78 @@
 #include "bullet_springs.hpp"
 
-// the direction and length of a link at the current iterate; a zero direction where its ends coincide
-static btVector3 direction(const btSoftBody::Link &link, double &length) {
-    btVector3 d = link.m_n[1]->m_q - link.m_n[0]->m_q;
-    length = d.length();
-    return length > 0 ? d / length : btVector3(0, 0, 0);
+ck_BulletSprings::ck_BulletSprings(ck_BulletBody &owner, bool implicit)
+    : body(owner), loops(ck_bullet_loops()), is_implicit(implicit),
+      is_damped(owner.model->terms & (CK_TERM_DAMPING | CK_TERM_DRAG)), has_force(owner.model->terms & CK_TERM_FORCE),
+      along(owner.links.rest.size()), across(owner.links.rest.size()), own(owner.soft->m_nodes.size()), made_for{0, 0},
+      is_stale(true), damping_scale_before(0) {}
+
+// Normals and lengths are those of the current iterate, m_q.
+void ck_BulletSprings::add_forces(btScalar elastic_scale, btScalar damping_scale, TVStack &force) {
+    btSoftBody &soft = *body.soft;
+    const ck_BulletLinks links = body.links.view();
+    double damps = body.model->terms & CK_TERM_DAMPING ? damping_scale : 0;
+    const ck_BulletNodes nodes = ck_bullet_nodes(body, &btSoftBody::Node::m_q);
+    loops->pull(&links, &nodes, &force[0][0], elastic_scale, damps);
+    is_stale = true;
+    const btVector3 field(body.model->force[0], body.model->force[1], body.model->force[2]);
+    for (int i = 0; i < soft.m_nodes.size() && has_force && elastic_scale != 0; i++)
+        if (soft.m_nodes[i].m_im > 0) force[i] += elastic_scale * field;
+    for (int i = 0; i < soft.m_nodes.size() && body.model->drag > 0 && damping_scale != 0; i++)
+        if (soft.m_nodes[i].m_im > 0)
+            force[i] -= damping_scale * body.model->drag / soft.m_nodes[i].m_im * soft.m_nodes[i].m_v;
 }
 
 void ck_BulletSprings::addScaledForces(btScalar scale, TVStack &force) {
-    addScaledExplicitForce(scale, force);
-    addScaledDampingForce(scale, force);
+    add_forces(scale, scale, force);
 }
 
 void ck_BulletSprings::addScaledExplicitForce(btScalar scale, TVStack &force) {
-    btSoftBody &soft = *body.soft;
-    for (int i = 0; i < soft.m_links.size(); i++) {
-        const btSoftBody::Link &link = soft.m_links[i];
-        double length;
-        btVector3 n = direction(link, length);
-        btVector3 tension = n * (scale * body.spring[i]->stiffness * (length - body.spring[i]->rest));
-        force[link.m_n[0]->index] += tension;
-        force[link.m_n[1]->index] -= tension;
-    }
-    if (!(body.model->terms & CK_TERM_FORCE)) return;
-    btVector3 field(body.model->force[0], body.model->force[1], body.model->force[2]);
-    for (int i = 0; i < soft.m_nodes.size(); i++)
-        if (soft.m_nodes[i].m_im > 0) force[soft.m_nodes[i].index] += scale * field;
+    add_forces(scale, 0, force);
 }
 
 void ck_BulletSprings::addScaledDampingForce(btScalar scale, TVStack &force) {
-    btSoftBody &soft = *body.soft;
-    for (int i = 0; i < soft.m_links.size() && (body.model->terms & CK_TERM_DAMPING); i++) {
-        const btSoftBody::Link &link = soft.m_links[i];
-        double length;
-        btVector3 n = direction(link, length);
-        btVector3 tension = n * (scale * body.spring[i]->damping * n.dot(link.m_n[1]->m_v - link.m_n[0]->m_v));
-        force[link.m_n[0]->index] += tension;
-        force[link.m_n[1]->index] -= tension;
-    }
-    for (int i = 0; i < soft.m_nodes.size() && (body.model->terms & CK_TERM_DRAG); i++)
-        if (soft.m_nodes[i].m_im > 0)
-            force[soft.m_nodes[i].index] -= scale * body.model->drag / soft.m_nodes[i].m_im * soft.m_nodes[i].m_v;
+    if (is_damped) add_forces(0, scale, force);
 }
 
-void ck_BulletSprings::addScaledElasticForceDifferential(btScalar scale, const TVStack &dx, TVStack &df) {
-    btSoftBody &soft = *body.soft;
-    for (int i = 0; i < soft.m_links.size(); i++) {
-        const btSoftBody::Link &link = soft.m_links[i];
-        double length;
-        btVector3 n = direction(link, length);
-        if (!(length > 0)) continue;
-        btVector3 relative = dx[link.m_n[1]->index] - dx[link.m_n[0]->index];
-        btVector3 along = n * n.dot(relative);
-        double transverse = btMax(0.0, 1 - body.spring[i]->rest / length);
-        btVector3 change = scale * body.spring[i]->stiffness * (along + transverse * (relative - along));
-        df[link.m_n[0]->index] += change;
-        df[link.m_n[1]->index] -= change;
+// Bullet asks for both differentials in turn, some hundred times a step: they are answered in one pass, with all that
+// does not change from one to the next made before.
+void ck_BulletSprings::multiply(btScalar elastic_scale, btScalar damping_scale, const TVStack &d, TVStack &result) {
+    const ck_BulletLinks links = body.links.view();
+    // damping alone does not depend on lengths
+    bool is_new = made_for[0] != elastic_scale || made_for[1] != damping_scale;
+    if (is_new || (is_stale && elastic_scale != 0)) {
+        for (size_t i = 0; i < along.size(); i++) {
+            double length = links.length[i], stiffness = elastic_scale * links.stiffness[i];
+            double transverse = length > 0 ? btMax(0.0, 1 - links.rest[i] / length) : 0;
+            along[i] = stiffness * (1 - transverse) + damping_scale * links.damping[i];
+            across[i] = stiffness * transverse;
+        }
+        for (size_t i = 0; i < own.size(); i++) {
+            double weight = body.soft->m_nodes[static_cast<int>(i)].m_im;
+            own[i] = weight > 0 ? damping_scale * body.model->drag / weight : 0;
+        }
+        made_for[0] = elastic_scale;
+        made_for[1] = damping_scale;
+        is_stale = false;
     }
+    loops->multiply(&links, along.data(), elastic_scale != 0 ? across.data() : nullptr, own.data(), &d[0][0], &result[0][0]);
 }
 
 void ck_BulletSprings::addScaledDampingForceDifferential(btScalar scale, const TVStack &dv, TVStack &df) {
-    btSoftBody &soft = *body.soft;
-    for (int i = 0; i < soft.m_links.size() && (body.model->terms & CK_TERM_DAMPING); i++) {
-        const btSoftBody::Link &link = soft.m_links[i];
-        double length;
-        btVector3 n = direction(link, length);
-        btVector3 change =
-            n * (scale * body.spring[i]->damping * n.dot(dv[link.m_n[1]->index] - dv[link.m_n[0]->index]));
-        df[link.m_n[0]->index] += change;
-        df[link.m_n[1]->index] -= change;
-    }
-    for (int i = 0; i < soft.m_nodes.size() && (body.model->terms & CK_TERM_DRAG); i++) {
-        const btSoftBody::Node &node = soft.m_nodes[i];
-        if (node.m_im > 0) df[node.index] -= scale * body.model->drag / node.m_im * dv[node.index];
-    }
+    // the elastic one follows, and answers for both
+    damping_scale_before = is_damped ? scale : 0;
+    if (!is_implicit && is_damped) multiply(0, scale, dv, df);
+}
+
+void ck_BulletSprings::addScaledElasticForceDifferential(btScalar scale, const TVStack &dx, TVStack &df) {
+    multiply(scale, damping_scale_before, dx, df);
 }
 
 // only the preconditioner reads it: what it leaves out costs iterations, not accuracy
 void ck_BulletSprings::buildDampingForceDifferentialDiagonal(btScalar scale, TVStack &diagonal) {
     btSoftBody &soft = *body.soft;
-    for (int i = 0; i < soft.m_nodes.size() && (body.model->terms & CK_TERM_DRAG); i++) {
+    for (int i = 0; i < soft.m_nodes.size() && body.model->drag > 0; i++) {
         const btSoftBody::Node &node = soft.m_nodes[i];
-        if (node.m_im > 0) diagonal[node.index] -= btVector3(1, 1, 1) * (scale * body.model->drag / node.m_im);
+        if (node.m_im > 0) diagonal[i] -= btVector3(1, 1, 1) * (scale * body.model->drag / node.m_im);
     }
 }

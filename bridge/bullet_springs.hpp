@@ -11,7 +11,7 @@
 
 class ck_BulletSprings : public btDeformableLagrangianForce {
   public:
-    explicit ck_BulletSprings(const ck_BulletBody &owner) : body(owner) {}
+    ck_BulletSprings(ck_BulletBody &owner, bool is_implicit);
 
     void addScaledForces(btScalar scale, TVStack &force) override;
     void addScaledExplicitForce(btScalar scale, TVStack &force) override;
@@ -24,7 +24,17 @@ class ck_BulletSprings : public btDeformableLagrangianForce {
     }
 
   private:
-    const ck_BulletBody &body;
+    void add_forces(btScalar elastic_scale, btScalar damping_scale, TVStack &force);
+    void multiply(btScalar elastic_scale, btScalar damping_scale, const TVStack &d, TVStack &result);
+
+    ck_BulletBody &body;
+    const ck_BulletLoops *loops;
+    bool is_implicit, is_damped, has_force;
+    // what multiply answers with, of each link and node, for the scales it was made for; stale once normals are new
+    std::vector<double> along, across, own;
+    btScalar made_for[2];
+    bool is_stale;
+    btScalar damping_scale_before; // of the first of two calls that are answered together
 };
 
 #endif

@@ -6,9 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Share of a depth that is pushed out in a step, and the most speed that this may give, m/s: more would bounce.
+// Share of a depth that is pushed out in a step, and the most speed that this may give, as a share of √(field·size): more
+// would bounce.
 #define PUSH_SHARE 0.2
-#define PUSH_SPEED 0.1
+#define PUSH_SPEED 0.03
 // The most of a ball's radius that a step may go for the ball to be as good as a plane.
 #define SMALL_STEP 0.05
 
@@ -17,7 +18,12 @@ ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *mode
     if (!model->collider_count) return CK_OK;
     ck_OdeContacts *made = calloc(1, sizeof *made);
     size_t most = (size_t)model->particle_count * (size_t)model->collider_count;
-    if (made) *made = (ck_OdeContacts){.model = model, .h = h, .feedback = calloc(most, sizeof *made->feedback)};
+    double field[3];
+    ck_model_mean_field(model, field);
+    double push_speed = ck_length(field) > 0 ? PUSH_SPEED * sqrt(ck_length(field) * model->size) : INFINITY;
+    if (made)
+        *made = (ck_OdeContacts){
+            .model = model, .h = h, .push_speed = push_speed, .feedback = calloc(most, sizeof *made->feedback)};
     if (made && made->feedback) made->joints = dJointGroupCreate(0);
     if (!made || !made->joints) {
         ck_ode_contacts_destroy(made);
@@ -37,11 +43,12 @@ void ck_ode_contacts_destroy(ck_OdeContacts *contacts) {
 // The speed along the normal that the joint asks for. ODE's own bounce adds what it corrects of the depth, and gains
 // energy by it. An impact is answered once it is inside; without restitution it stops at the surface. What cannot be
 // told from rest, 2·g·h, rests.
-static double wanted_speed(const ck_Collider *collider, double gap, double speed, double rest, double pull, double h) {
+static double wanted_speed(const ck_Collider *collider, double gap, double speed, double rest, double pull, double h,
+                           double push_speed) {
     if (gap >= 0) return -gap / h;
     if (speed < -rest && collider->restitution > 0)
         return ck_collider_rebound(collider->restitution, -gap, -speed, pull, h);
-    return fmin(PUSH_SHARE * -gap / h, PUSH_SPEED);
+    return fmin(PUSH_SHARE * -gap / h, push_speed);
 }
 
 // The direction along the surface in which the particle slides, or would: along any other, friction is a pyramid.
@@ -87,7 +94,8 @@ static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, 
     dContact contact = {.surface = {.mode = dContactMotionN | dContactSoftERP | dContactApprox1 | dContactFDir1,
                                     .mu = collider->friction,
                                     .soft_erp = 0,
-                                    .motionN = wanted_speed(collider, gap, speed, rest, -ck_dot(field, normal), h)}};
+                                    .motionN = wanted_speed(collider, gap, speed, rest, -ck_dot(field, normal), h,
+                                                            contacts->push_speed)}};
     slip_direction(slip, velocity, field, normal, h);
     for (int axis = 0; axis < 3; axis++) {
         contact.geom.pos[axis] = position[axis]; // at the centre: nothing turns

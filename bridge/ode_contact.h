@@ -10,6 +10,7 @@
 typedef struct ck_OdeContacts {
     const ck_Model *model;
     double h;                 // s, one substep
+    double push_speed;        // m/s, the most with which what is inside is pushed out
     dJointGroupID joints;     // of this substep
     dJointFeedback *feedback; // [particle_count * collider_count]
     int count;                // of this substep

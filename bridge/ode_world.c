@@ -10,7 +10,7 @@
 
 // Rows that dWorldStep, whose cost grows with their cube, is given at most: 1500 take about 0.1 s a step.
 #define DIRECT_MAX_ROWS 1500
-// Beyond this speed, in m/s, ODE's own assertions would abort the process soon.
+// Beyond this speed, in sizes of the body per second, ODE's own assertions would abort the process soon.
 #define MAX_SPEED 1e6
 
 typedef struct OdeWorld {
@@ -36,9 +36,14 @@ static double error_reduction(const ck_Spring *spring, double h) {
     return isinf(spring->stiffness) ? 0.8 : h * spring->stiffness / (h * spring->stiffness + spring->damping);
 }
 
-// A rigid bar keeps a little softness: dWorldStep aborts on redundant constraints without.
-static double constraint_force_mixing(const ck_Spring *spring, double h) {
-    return isinf(spring->stiffness) ? 1e-8 : 1 / (h * spring->stiffness + spring->damping);
+// A rigid bar keeps a little softness, as a share of what its ends' masses make of a force: dWorldStep aborts on redundant
+// constraints without.
+#define BAR_SOFTNESS 2.5e-10
+#define CONTACT_SOFTNESS 5e-13
+
+static double constraint_force_mixing(const ck_Model *model, const ck_Spring *spring, double h) {
+    double weight = ck_model_inverse_mass(model, spring->a) + ck_model_inverse_mass(model, spring->b);
+    return isinf(spring->stiffness) ? BAR_SOFTNESS * weight : 1 / (h * spring->stiffness + spring->damping);
 }
 
 // With contact that may be on every particle, of three rows each with friction.
@@ -57,8 +62,8 @@ static void translate_springs(const ck_Model *model, double h, ck_Ledger *ledger
         if (!spring) continue;
         bool rigid = isinf(spring->stiffness);
         ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamCFM",
-                                             constraint_force_mixing(spring, h),
-                                             rigid ? "1e-8: softest that is safe" : "1/(h*k + c)",
+                                             constraint_force_mixing(model, spring, h),
+                                             rigid ? "2.5e-10*(wa + wb): softest that is safe" : "1/(h*k + c)",
                                              rigid ? CK_APPROXIMATE : match});
         ck_ledger_add(ledger,
                       (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamERP",
@@ -146,7 +151,7 @@ static void add_joint(OdeWorld *ode, const ck_Spring *spring) {
     // after attaching, which takes the current length for the rest length
     dJointSetDBallDistance(joint, spring->rest);
     dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt));
-    dJointSetDBallParam(joint, dParamCFM, constraint_force_mixing(spring, ode->dt));
+    dJointSetDBallParam(joint, dParamCFM, constraint_force_mixing(ode->model, spring, ode->dt));
 }
 
 // Springs between two pins do nothing, until one of them is let go.
@@ -172,13 +177,16 @@ static ck_Status build(void **state, const ck_Model *model, const ck_Settings *u
     ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
     if (ode->bodies) ode->world = dWorldCreate();
     if (ode->world) ode->joints = dJointGroupCreate(0);
-    ck_Status status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
-    if (!ode->joints || status) {
+    ck_Status status = ode->joints ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
+    if (status) {
         destroy(ode);
-        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+        return status;
     }
     dWorldSetGravity(ode->world, model->gravity[0], model->gravity[1], model->gravity[2]);
     dWorldSetAutoDisableFlag(ode->world, 0);
+    // that of contacts, whose default of 1e-10 is what this is for particles of 5 g
+    dWorldSetCFM(ode->world, CONTACT_SOFTNESS * ck_stability_lightness(model));
     if (quick) dWorldSetQuickStepNumIterations(ode->world, (int)used->iterations);
     if (quick) dWorldSetQuickStepW(ode->world, used->relaxation);
     add_bodies(ode);
@@ -211,7 +219,7 @@ static ck_Status create_direct(void **state, const ck_Model *model, const ck_Set
 static bool is_safe(const OdeWorld *ode) {
     for (int i = 0; i < ode->model->particle_count; i++) {
         const dReal *position = dBodyGetPosition(ode->bodies[i]), *velocity = dBodyGetLinearVel(ode->bodies[i]);
-        if (!(ck_dot(velocity, velocity) < MAX_SPEED * MAX_SPEED) || !isfinite(ck_dot(position, position)))
+        if (!(ck_length(velocity) < MAX_SPEED * ode->model->size) || !isfinite(ck_dot(position, position)))
             return false;
     }
     return true;

@@ -53,6 +53,8 @@ typedef struct ck_Engine {
     void (*release)(void *state, int particle);
     // The mean force of all colliders on the body over the last frame, [3] N. NULL where the engine does not tell.
     void (*contact)(const void *state, double *force);
+    // A literal that a reader of the result must know, such as that a speed was clamped; NULL: nothing. May be NULL.
+    const char *(*remark)(const void *state);
     void (*destroy)(void *state);
 } ck_Engine;
 

@@ -117,6 +117,8 @@ typedef struct Oscillator {
     double k, c, m, rest, dt;
     uint32_t iterations;
     double u, v, a;
+    int step;    // since the start
+    double held; // a length that a method goes on with, m
 } Oscillator;
 
 // m·v' = m·v − dt·(k·u' + c·v'), u' = u + dt·v'.
@@ -141,9 +143,10 @@ static void symplectic_euler(Oscillator *o) {
 
 // Bullet's link answers an error x − L with f(x) = x·(x² − L²)/(x² + L²), and the bridge divides it by
 // h(l) = l·(l + L)/(l² + L²) of the length before the step, so that f/h is Hooke's l − L where both lengths agree.
-static double bullet_error(double x, double l, double rest) {
+// But no link may give more than its whole error: h is at least the share that a sweep takes.
+static double bullet_error(double x, double l, double rest, double share) {
     double f = x * (x * x - rest * rest) / (x * x + rest * rest), h = l * (l + rest) / (l * l + rest * rest);
-    return f / h;
+    return f / fmax(h, share);
 }
 
 // The share of the error that one of the bridge's sweeps takes off.
@@ -152,12 +155,17 @@ static double bullet_share(double q, uint32_t iterations) {
     return iterations == 1 ? fmin(1, q / (1 + q / 2)) : 1 - pow(1 + q, -1.0 / iterations);
 }
 
-// Damping explicit, then each sweep takes its share off what is left.
+// Damping explicit, for two substeps at once where it leaves a relative speed its direction; the length that the
+// correction is made for is held for twice as many. Then each sweep takes its share off what is left, at most all of it.
 static void bullet_link(Oscillator *o) {
     double share = bullet_share(o->k * o->dt * o->dt / o->m, o->iterations);
-    double moved = o->u + o->dt * o->v * (1 - o->dt * o->c / o->m);
+    int apart = 4 * o->c / o->m * o->dt > 1 ? 1 : 2;
+    double taken = o->step % apart == 0 ? apart * o->dt * o->c / o->m : 0;
+    if (o->step % (2 * apart) == 0) o->held = o->rest + o->u;
+    o->step++;
+    double moved = o->u + o->dt * o->v * (1 - taken);
     for (uint32_t i = 0; i < o->iterations; i++)
-        moved -= share * bullet_error(o->rest + moved, o->rest + o->u, o->rest);
+        moved -= share * bullet_error(o->rest + moved, o->held, o->rest, share);
     o->v = (moved - o->u) / o->dt;
     o->u = moved;
 }
@@ -205,7 +213,7 @@ static bool oscillate_symplectic(const ck_Model *model, const ck_Settings *used,
 
 static bool oscillate_bullet_link(const ck_Model *model, const ck_Settings *used, double time, double *position,
                                   double *velocity) {
-    return oscillate(model, used, time, position, velocity, bullet_link);
+    return !(used->klst > 0) && oscillate(model, used, time, position, velocity, bullet_link);
 }
 
 // One link of a chain that rests under Gauss–Seidel sweeps from the pin down, one sweep a substep.
@@ -230,13 +238,15 @@ static double xpbd_stretch(const Link *link) {
     return link->multiplier * ((1 + gamma) * link->weight + compliance) - (1 + gamma) * link->ahead;
 }
 
-// λ·W/κ = f(l + ahead)/h(l), solved for l by fixed point: f is nearly linear, each round gains a digit or more.
+// λ·W/κ = f(l + ahead)/h(l), solved for l by fixed point: f is nearly linear, each round gains a digit or more. Bars are
+// not corrected, which is as if for their own length.
 static double bullet_stretch(const Link *link) {
     double rest = link->spring->rest,
            share = bullet_share(link->spring->stiffness * link->dt * link->dt * link->weight, 1);
+    bool is_bar = isinf(link->spring->stiffness);
     double wanted = link->multiplier * link->weight / share, stretch = wanted - link->ahead;
     for (int round = 0; round < 50; round++)
-        stretch += wanted - bullet_error(rest + stretch + link->ahead, rest + stretch, rest);
+        stretch += wanted - bullet_error(rest + stretch + link->ahead, rest + (is_bar ? 0 : stretch), rest, share);
     return stretch;
 }
 
@@ -297,7 +307,7 @@ static bool hang_xpbd(const ck_Model *model, const ck_Settings *used, double tim
 static bool hang_bullet(const ck_Model *model, const ck_Settings *used, double time, double *position,
                         double *velocity) {
     (void)time;
-    return used->iterations == 1 && hang(model, used, 1, position, velocity, bullet_stretch);
+    return used->iterations == 1 && !(used->klst > 0) && hang(model, used, 1, position, velocity, bullet_stretch);
 }
 
 // True where the method's forces balance at rest: it steps by them, or solves for the end of the step. QuickStep's

@@ -33,10 +33,11 @@ static double weight_ever(const ck_Model *model, int particle) {
     return ck_model_is_held(model, particle) ? 0 : 1 / model->mass[particle];
 }
 
-ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
-    *frequency = 0;
-    double(*stiffness)[6] = calloc((size_t)model->particle_count, sizeof *stiffness);
-    if (!stiffness) return CK_NO_MEMORY;
+// The largest 2·w_i·λ_max(Σ value·n·nᵀ) over a particle's springs, of their stiffness or their damping.
+static ck_Status largest_rate(const ck_Model *model, double (*value)(const ck_Spring *spring), double *largest) {
+    *largest = 0;
+    double(*sums)[6] = calloc((size_t)model->particle_count, sizeof *sums);
+    if (!sums) return CK_NO_MEMORY;
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         double n[3];
@@ -44,15 +45,37 @@ ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
         double length = ck_length(n);
         if (!(length > 0)) continue;
         for (int axis = 0; axis < 3; axis++) n[axis] /= length;
-        add_outer(stiffness[spring->a], spring->stiffness, n);
-        add_outer(stiffness[spring->b], spring->stiffness, n);
+        add_outer(sums[spring->a], value(spring), n);
+        add_outer(sums[spring->b], value(spring), n);
     }
-    double largest = 0;
     for (int i = 0; i < model->particle_count; i++)
-        if (!ck_model_is_held(model, i)) largest = fmax(largest, 2 * largest_eigenvalue(stiffness[i]) / model->mass[i]);
-    free(stiffness);
-    *frequency = sqrt(largest);
+        if (!ck_model_is_held(model, i)) *largest = fmax(*largest, 2 * largest_eigenvalue(sums[i]) / model->mass[i]);
+    free(sums);
     return CK_OK;
+}
+
+static double stiffness_of(const ck_Spring *spring) {
+    return spring->stiffness;
+}
+
+static double damping_of(const ck_Spring *spring) {
+    return spring->damping;
+}
+
+ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
+    ck_Status status = largest_rate(model, stiffness_of, frequency);
+    *frequency = sqrt(*frequency);
+    return status;
+}
+
+double ck_stability_damping_rate(const ck_Model *model) {
+    double rate;
+    if (!(model->terms & CK_TERM_DAMPING)) return 0;
+    // without memory the bound that no directions lower
+    if (!largest_rate(model, damping_of, &rate)) return rate;
+    for (int i = 0; i < model->spring_count; i++)
+        rate = fmax(rate, 4 * model->springs[i].damping * model->spring_count * ck_stability_lightness(model));
+    return rate;
 }
 
 double ck_stability_verlet_limit(double frequency, double damping) {

@@ -18,6 +18,10 @@ ck_Status ck_stability_frequency(const ck_Model *model, double *frequency);
 //   damping  b, 1/s, of the mode: by springs (c/k)·ω², and drag
 double ck_stability_verlet_limit(double frequency, double damping);
 
+// An upper bound of the fastest rate at which spring damping takes a motion, in 1/s: the largest eigenvalue of M⁻¹·C by
+// the rule of ck_stability_frequency. A damping force stepped explicitly is stable up to 2 over that.
+double ck_stability_damping_rate(const ck_Model *model);
+
 // The largest c/k of its springs, in s.
 double ck_stability_damping_time(const ck_Model *model);
 

@@ -1,0 +1,77 @@
+#include "scaled_model.h"
+
+#include "vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void *copy_of(const void *from, size_t count, size_t size) {
+    void *copy = malloc(count * size + 1);
+    if (copy && count) memcpy(copy, from, count * size);
+    return copy;
+}
+
+static void divide(double *values, int count, double by) {
+    for (int i = 0; i < count; i++) values[i] /= by;
+}
+
+static void scale_lengths(ck_Model *model, double unit) {
+    divide(model->position, 3 * model->particle_count, unit);
+    divide(model->velocity, 3 * model->particle_count, unit);
+    divide(model->gravity, 3, unit);
+    divide(model->force, 3, unit);
+    divide(&model->size, 1, unit);
+    divide(&model->spacing, 1, unit);
+    for (int i = 0; i < model->spring_count; i++) divide(&model->springs[i].rest, 1, unit);
+    for (int i = 0; i < model->collider_count; i++) {
+        divide(model->colliders[i].point, 3, unit);
+        divide(&model->colliders[i].radius, 1, unit);
+    }
+}
+
+static void scale_masses(ck_Model *model, double unit) {
+    divide(model->mass, model->particle_count, unit);
+    divide(model->force, 3, unit);
+    for (int i = 0; i < model->spring_count; i++) {
+        divide(&model->springs[i].stiffness, 1, unit);
+        divide(&model->springs[i].damping, 1, unit);
+    }
+}
+
+// The power of two at or below a number.
+static double power_below(double number) {
+    return ldexp(1, ilogb(number));
+}
+
+ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) {
+    const size_t particles = (size_t)model->particle_count;
+    *scaled = (ck_ScaledModel){.model = *model};
+    ck_Model *own = &scaled->model;
+    own->position = copy_of(model->position, 3 * particles, sizeof(double));
+    own->velocity = copy_of(model->velocity, 3 * particles, sizeof(double));
+    own->mass = copy_of(model->mass, particles, sizeof(double));
+    own->pinned = copy_of(model->pinned, particles, sizeof(bool));
+    own->springs = copy_of(model->springs, (size_t)model->spring_count, sizeof(ck_Spring));
+    own->colliders = copy_of(model->colliders, (size_t)model->collider_count, sizeof(ck_Collider));
+    if (!own->position || !own->velocity || !own->mass || !own->pinned || !own->springs || !own->colliders) {
+        ck_scaled_model_free(scaled);
+        return CK_NO_MEMORY;
+    }
+    double total = 0;
+    for (size_t i = 0; i < particles; i++) total += model->mass[i];
+    scaled->length = power_below(model->size);
+    scaled->mass = power_below(total / (double)particles);
+    scale_lengths(own, scaled->length);
+    scale_masses(own, scaled->mass);
+    return CK_OK;
+}
+
+void ck_scaled_model_free(ck_ScaledModel *scaled) {
+    free(scaled->model.position);
+    free(scaled->model.velocity);
+    free(scaled->model.mass);
+    free(scaled->model.pinned);
+    free(scaled->model.springs);
+    free(scaled->model.colliders);
+    *scaled = (ck_ScaledModel){0};
+}
