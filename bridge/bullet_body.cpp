@@ -152,13 +152,7 @@ static void ledger_contact(ck_Ledger *ledger, const ck_Model *model, const char 
 
 void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,
                       const char *friction_formula) {
-    ck_ScaledModel scaled;
-    if (!ck_scaled_model_create(&scaled, model)) {
-        const char *formula = "a power of two: Bullet sees every body as one of its own units; native values are in SI";
-        ck_ledger_add(ledger, {"length", 1, "m", "unit", 1 / scaled.length, formula, CK_EXACT});
-        ck_ledger_add(ledger, {"mass", 1, "kg", "unit", 1 / scaled.mass, formula, CK_EXACT});
-        ck_scaled_model_free(&scaled);
-    }
+    ck_scaled_model_ledger(ledger, model);
     ck_ledger_add(ledger,
                   {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
     ck_ledger_add(ledger,

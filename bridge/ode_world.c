@@ -1,6 +1,7 @@
 // ODE: particles are bodies, springs are double ball joints whose softness (ERP, CFM) is the spring's k and c.
 #include "engine_list.h"
 #include "ode_contact.h"
+#include "scaled_model.h"
 #include "stability.h"
 #include "vector.h"
 
@@ -14,7 +15,8 @@
 #define MAX_SPEED 1e6
 
 typedef struct OdeWorld {
-    const ck_Model *model;
+    ck_ScaledModel scaled;
+    const ck_Model *model; // of scaled
     dWorldID world;
     dJointGroupID joints;
     dBodyID *bodies; // [particle_count]
@@ -99,6 +101,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
     if (quick) used->relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1.3;
     double h = model->step / used->substeps;
+    ck_scaled_model_ledger(ledger, model);
     ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "h", h, "step / substeps", CK_EXACT});
     ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "dMass", model->mass[0],
                                          "m; kinematic where pinned", CK_EXACT});
@@ -119,6 +122,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 static void destroy(void *state) {
     OdeWorld *ode = state;
     ck_ode_contacts_destroy(ode->contacts);
+    ck_scaled_model_free(&ode->scaled);
     if (ode->joints) dJointGroupDestroy(ode->joints);
     if (ode->world) dWorldDestroy(ode->world);
     if (--world_count == 0) dCloseODE();
@@ -169,13 +173,15 @@ static void release(void *state, int particle) {
     dBodySetLinearDamping(body, ode->model->drag * ode->dt);
 }
 
-static ck_Status build(void **state, const ck_Model *model, const ck_Settings *used, bool quick, ck_Error *error) {
+static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *used, bool quick, ck_Error *error) {
     OdeWorld *ode = calloc(1, sizeof *ode);
     if (!ode) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    *ode = (OdeWorld){.model = model, .dt = model->step / used->substeps, .substeps = used->substeps, .quick = quick};
+    *ode = (OdeWorld){.dt = scene->step / used->substeps, .substeps = used->substeps, .quick = quick};
+    ck_Status scaled = ck_scaled_model_create(&ode->scaled, scene);
+    const ck_Model *model = ode->model = &ode->scaled.model;
     if (world_count++ == 0) dInitODE2(0);
     ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
-    if (ode->bodies) ode->world = dWorldCreate();
+    if (ode->bodies && !scaled) ode->world = dWorldCreate();
     if (ode->world) ode->joints = dJointGroupCreate(0);
     ck_Status status = ode->joints ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
@@ -247,15 +253,16 @@ static void read_state(const void *state, double *position, double *velocity) {
     const OdeWorld *ode = state;
     for (int i = 0; i < ode->model->particle_count; i++)
         for (int axis = 0; axis < 3; axis++) {
-            position[3 * i + axis] = dBodyGetPosition(ode->bodies[i])[axis];
-            velocity[3 * i + axis] = dBodyGetLinearVel(ode->bodies[i])[axis];
+            position[3 * i + axis] = ode->scaled.length * dBodyGetPosition(ode->bodies[i])[axis];
+            velocity[3 * i + axis] = ode->scaled.length * dBodyGetLinearVel(ode->bodies[i])[axis];
         }
 }
 
 static void read_contact(const void *state, double *force) {
     const OdeWorld *ode = state;
+    double unit = ode->scaled.mass * ode->scaled.length;
     for (int axis = 0; axis < 3; axis++)
-        force[axis] = ode->contacts ? ode->contacts->impulse[axis] / ode->model->step : 0;
+        force[axis] = ode->contacts ? unit * ode->contacts->impulse[axis] / ode->model->step : 0;
 }
 
 #define ODE_TERMS                                                                                                      \

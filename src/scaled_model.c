@@ -43,6 +43,16 @@ static double power_below(double number) {
     return ldexp(1, ilogb(number));
 }
 
+static double length_unit(const ck_Model *model) {
+    return power_below(model->size);
+}
+
+static double mass_unit(const ck_Model *model) {
+    double total = 0;
+    for (int i = 0; i < model->particle_count; i++) total += model->mass[i];
+    return power_below(total / model->particle_count);
+}
+
 ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) {
     const size_t particles = (size_t)model->particle_count;
     *scaled = (ck_ScaledModel){.model = *model};
@@ -57,13 +67,19 @@ ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) 
         ck_scaled_model_free(scaled);
         return CK_NO_MEMORY;
     }
-    double total = 0;
-    for (size_t i = 0; i < particles; i++) total += model->mass[i];
-    scaled->length = power_below(model->size);
-    scaled->mass = power_below(total / (double)particles);
+    scaled->length = length_unit(model);
+    scaled->mass = mass_unit(model);
     scale_lengths(own, scaled->length);
     scale_masses(own, scaled->mass);
     return CK_OK;
+}
+
+void ck_scaled_model_ledger(ck_Ledger *ledger, const ck_Model *model) {
+    const char *formula = "power of two below the size and the mean mass, so that all bodies are alike to the engine; "
+                          "native values below are in SI";
+    ck_ledger_add(ledger,
+                  (ck_LedgerRow){"unit of length", 1, "m", "length", 1 / length_unit(model), formula, CK_EXACT});
+    ck_ledger_add(ledger, (ck_LedgerRow){"unit of mass", 1, "kg", "mass", 1 / mass_unit(model), formula, CK_EXACT});
 }
 
 void ck_scaled_model_free(ck_ScaledModel *scaled) {

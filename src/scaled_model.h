@@ -4,6 +4,7 @@
 #ifndef CK_SCALED_MODEL_H
 #define CK_SCALED_MODEL_H
 
+#include "ledger.h"
 #include "model.h"
 
 #ifdef __cplusplus
@@ -17,6 +18,9 @@ typedef struct ck_ScaledModel {
 
 // Errors: CK_NO_MEMORY. Free with ck_scaled_model_free in any case; the other model must outlive it.
 ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model);
+
+// Adds what the units are to a ledger.
+void ck_scaled_model_ledger(ck_Ledger *ledger, const ck_Model *model);
 
 // Accepts a zeroed one.
 void ck_scaled_model_free(ck_ScaledModel *scaled);

@@ -191,9 +191,7 @@ static void test_invariance(void **state) {
 }
 
 // Units are the author's: a millimetre or a kilometre in place of a metre, a milligram or a ton in place of a kilogram.
-// Powers of two round nothing, so that an engine with no length and mass of its own gives the same to the last bit. ODE's
-// direct solver for contact takes another path with other masses, so that its rounding differs: 1e-16 on each of some
-// 1e3 substeps.
+// Powers of two round nothing, so that an engine with no length and mass of its own gives the same to the last bit.
 static void test_units(void **state) {
     (void)state;
     static const char *const texts[] = {
@@ -225,7 +223,7 @@ static void test_units(void **state) {
                     char what[120];
                     snprintf(what, sizeof what, "%s, %s: %s", ck_engine_at(i)->name, units[unit].name,
                              measured[metric]);
-                    assert_near(what, after[metric], before[metric], strcmp(ck_engine_at(i)->family, "ODE") ? 0 : 1e-11);
+                    assert_near(what, after[metric], before[metric], 0);
                 }
             }
         }
