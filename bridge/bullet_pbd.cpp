@@ -190,15 +190,17 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
     for (int i = 0; i < body.soft->m_rcontacts.size(); i++) {
         btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
         const ck_Collider &collider = ck_BulletColliders::of(body.model, contact.m_cti.m_colObj);
-        const btVector3 &normal = contact.m_cti.m_normal;
         const btSoftBody::Node &node = *contact.m_node;
+        // Bullet's normals are slopes of a grid, off by a hundredth on a ball whose radius is sixty of its voxels
+        double out[3], gap = ck_collider_gap(&collider, &node.m_q[0], out);
+        const btVector3 normal(out[0], out[1], out[2]);
+        contact.m_cti.m_normal = normal;
         auto index = contact.m_node - &body.soft->m_nodes[0];
         btVector3 way = node.m_x - node.m_q;
         // what links will add, by their tension at the start of the substep: it presses and pulls along, too
         btVector3 foreseen = way + tension_of(state, static_cast<int>(index)) * (node.m_im * dt * dt);
         double way_in = -way.dot(normal), press = -foreseen.dot(normal);
         double slip = (foreseen + normal * press).length();
-        double gap = node.m_q.dot(normal) + contact.m_cti.m_offset;
         double pull = -ck_bullet_field(body, body.particle_of_node[index]).dot(normal);
         Landing landing = land(collider, gap, way_in, pull, dt);
         landing.node = contact.m_node;
