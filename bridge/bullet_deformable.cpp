@@ -60,8 +60,8 @@ class World : public btDeformableMultiBodyDynamicsWorld {
     void rebound(const btSoftBody::DeformableNodeRigidContact &contact, btScalar dt);
 };
 
-// Restitution and its friction. Bullet's own friction is that of an impact that stops, of which its explicit world, which
-// looks ahead, only sees the part that is too fast to reach the surface: it is left out.
+// Restitution and its friction. Bullet's own friction is that of an impact that stops, of which its explicit world,
+// which looks ahead, only sees the part that is too fast to reach the surface: it is left out.
 void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btScalar dt) {
     const ck_Collider &collider = ck_BulletColliders::of(body->model, contact.m_cti.m_colObj);
     if (!(collider.restitution > 0)) return;

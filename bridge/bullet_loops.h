@@ -33,8 +33,8 @@ typedef struct ck_BulletHooke {
 } ck_BulletHooke;
 
 typedef struct ck_BulletLoops {
-    // Finds normals and lengths, and adds to force, [4*nodes], scale times the tension of springs and damping_scale times
-    // what their damping answers to velocity with.
+    // Finds normals and lengths, and adds to force, [4*nodes], scale times the tension of springs and damping_scale
+    // times what their damping answers to velocity with.
     void (*pull)(const ck_BulletLinks *links, const ck_BulletNodes *nodes, double *force, double scale,
                  double damping_scale);
     // With m the difference of d from a spring's first end to the other: adds along·(n·m)·n + across·m to result at the
@@ -42,8 +42,8 @@ typedef struct ck_BulletLoops {
     //   along  [links]; across  [links], NULL: none; own  [nodes]; d, result  [4*nodes]
     void (*multiply)(const ck_BulletLinks *links, const double *along, const double *across, const double *own,
                      const double *d, double *result);
-    // For the position-based world. of_one times h = l·(l + L)/(l² + L²), but at least least, is put into a link's slot of
-    // factor; and force, of the stride of nodes, gets damping as in pull. hooke may be NULL, damping_scale 0.
+    // For the position-based world. of_one times h = l·(l + L)/(l² + L²), but at least least, is put into a link's slot
+    // of factor; and force, of the stride of nodes, gets damping as in pull. hooke may be NULL, damping_scale 0.
     void (*prepare)(const ck_BulletLinks *links, const ck_BulletNodes *nodes, double *force, double damping_scale,
                     const ck_BulletHooke *hooke);
 } ck_BulletLoops;

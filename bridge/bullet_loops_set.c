@@ -22,8 +22,8 @@ CK_INLINE double sum(Vector v) {
 }
 
 // Each pass is made for every combination of what it may leave out, which then costs nothing.
-CK_INLINE void pull_links(const ck_BulletLinks *links, const ck_BulletNodes *nodes, double *restrict force, double scale,
-                          double damping_scale, bool is_damped) {
+CK_INLINE void pull_links(const ck_BulletLinks *links, const ck_BulletNodes *nodes, double *restrict force,
+                          double scale, double damping_scale, bool is_damped) {
     const int *restrict start = links->start, *restrict other = links->other;
     const double *restrict rest = links->rest, *restrict stiffness = links->stiffness,
                            *restrict damping = links->damping;
@@ -57,9 +57,9 @@ static void pull(const ck_BulletLinks *links, const ck_BulletNodes *nodes, doubl
         pull_links(links, nodes, force, scale, 0, false);
 }
 
-CK_INLINE void multiply_links(const ck_BulletLinks *links, const double *restrict along,
-                              const double *restrict across, const double *restrict own, const double *restrict d,
-                              double *restrict result, bool has_across) {
+CK_INLINE void multiply_links(const ck_BulletLinks *links, const double *restrict along, const double *restrict across,
+                              const double *restrict own, const double *restrict d, double *restrict result,
+                              bool has_across) {
     const int *restrict start = links->start, *restrict other = links->other;
     const double *restrict normal = links->normal;
     const int nodes = links->nodes;
@@ -105,7 +105,8 @@ CK_INLINE void prepare_links(const ck_BulletLinks *links, const ck_BulletNodes *
             const Vector d = load(position + there) - x;
             const double squared = sum(d * d);
             if (corrects) {
-                const double length = sqrt(squared), h = length * (length + rest[link]) / (squared + rest[link] * rest[link]);
+                const double length = sqrt(squared),
+                             h = length * (length + rest[link]) / (squared + rest[link] * rest[link]);
                 factor[slot[link]] = of_one[link] * (h > least[link] ? h : least[link]);
             }
             if (!is_damped) continue;

@@ -62,13 +62,13 @@ struct Classic {
     std::unique_ptr<Surroundings> around;
     ck_BulletBody body;
     const ck_BulletLoops *loops = ck_bullet_loops();
-    bool corrects;                     // to Hooke's law: springs, whose share is not the user's own
-    uint32_t substep;                  // since the start
-    uint32_t apart;                    // substeps from one damping force to the next
-    std::vector<double> of_one, least; // of each link of the table: (w_a + w_b)/κ, and κ
-    std::vector<int> slot;             // where its m_c0 is, in doubles from the first link's
-    btVector3 field_force;             // N on each node
-    std::vector<Landing> landings;     // of this substep
+    bool corrects;                          // to Hooke's law: springs, whose share is not the user's own
+    uint32_t substep;                       // since the start
+    uint32_t apart;                         // substeps from one damping force to the next
+    std::vector<double> of_one, least;      // of each link of the table: (w_a + w_b)/κ, and κ
+    std::vector<int> slot;                  // where its m_c0 is, in doubles from the first link's
+    btVector3 field_force;                  // N on each node
+    std::vector<Landing> landings;          // of this substep
     std::vector<std::vector<int>> links_of; // of each node; empty without colliders
 
     ~Classic() {
@@ -100,15 +100,15 @@ double spring_weight(const ck_Model *model, const ck_Spring &spring) {
     return ck_model_inverse_mass(model, spring.a) + ck_model_inverse_mass(model, spring.b);
 }
 
-// How many substeps a damping force stands for: two, which halves what it costs, but one where it would take more than a
-// relative speed. The correction to Hooke's law stands for twice as many.
+// How many substeps a damping force stands for: two, which halves what it costs, but one where it would take more than
+// a relative speed. The correction to Hooke's law stands for twice as many.
 uint32_t substeps_apart(const ck_Model *model, double dt) {
     return 2 * dt * ck_stability_damping_rate(model) > 1 ? 1 : 2;
 }
 
-// Time step: k·dt²/m ≤ 0.1 (k·dt²·W ≤ 0.2), where the static map is good to 1 %; rigid bars as for native-bars; damping,
-// a force before every second step, half of what is stable; drag, first order, 2 % of a speed; where there is contact
-// 1/240 s.
+// Time step: k·dt²/m ≤ 0.1 (k·dt²·W ≤ 0.2), where the static map is good to 1 %; rigid bars as for native-bars;
+// damping, a force before every second step, half of what is stable; drag, first order, 2 % of a speed; where there is
+// contact 1/240 s.
 void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     uint32_t sweeps = model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model) : 1;
     *used = ck_Settings{};
@@ -130,18 +130,18 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
         const ck_Spring *spring = ck_model_spring_of_kind(model, static_cast<ck_SpringKind>(kind));
         if (!spring) continue;
         double value = kappa(*spring, spring_weight(model, *spring), dt, *used);
-        ck_ledger_add(ledger,
-                      {ck_stiffness_names[kind], spring->stiffness, "N/m", "Material::m_kLST", value,
-                       used->klst > 0                ? "as set"
-                       : model->terms & CK_TERM_RIGID ? "1: all of a bar's error in each iteration"
-                       : used->iterations == 1
-                           ? "min(1, q/(1 + q/2)), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke"
-                           : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke",
-                       CK_APPROXIMATE});
+        ck_ledger_add(ledger, {ck_stiffness_names[kind], spring->stiffness, "N/m", "Material::m_kLST", value,
+                               used->klst > 0                 ? "as set"
+                               : model->terms & CK_TERM_RIGID ? "1: all of a bar's error in each iteration"
+                               : used->iterations == 1
+                                   ? "min(1, q/(1 + q/2)), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke"
+                                   : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke",
+                               CK_APPROXIMATE});
     }
     if (model->terms & CK_TERM_DAMPING)
-        ck_ledger_add(ledger, {"spring damping", model->springs[0].damping, "N*s/m", "Node::m_f",
-                               model->springs[0].damping, "c*(dv.n) before every second step: explicit", CK_APPROXIMATE});
+        ck_ledger_add(ledger,
+                      {"spring damping", model->springs[0].damping, "N*s/m", "Node::m_f", model->springs[0].damping,
+                       "c*(dv.n) before every second step: explicit", CK_APPROXIMATE});
     if (model->terms & CK_TERM_DRAG)
         ck_ledger_add(ledger, {"drag", model->drag, "1/s", "m_cfg.kDP", 1 - 1 / (1 + model->drag * dt),
                                "1 - 1/(1 + drag*dt)", CK_APPROXIMATE});
@@ -280,8 +280,8 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
     });
 }
 
-// Before a step: Bullet's correction k·l(l² − L²)/(l² + L²) becomes Hooke's k·(l − L), but of no link more than its whole
-// error is taken, which would explode; and damping is added as a force.
+// Before a step: Bullet's correction k·l(l² − L²)/(l² + L²) becomes Hooke's k·(l − L), but of no link more than its
+// whole error is taken, which would explode; and damping is added as a force.
 void prepare_links(Classic &state) {
     ck_BulletBody &body = state.body;
     btSoftBody &soft = *body.soft;

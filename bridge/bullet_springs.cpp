@@ -55,7 +55,8 @@ void ck_BulletSprings::multiply(btScalar elastic_scale, btScalar damping_scale, 
         made_for[1] = damping_scale;
         is_stale = false;
     }
-    loops->multiply(&links, along.data(), elastic_scale != 0 ? across.data() : nullptr, own.data(), &d[0][0], &result[0][0]);
+    loops->multiply(&links, along.data(), elastic_scale != 0 ? across.data() : nullptr, own.data(), &d[0][0],
+                    &result[0][0]);
 }
 
 void ck_BulletSprings::addScaledDampingForceDifferential(btScalar scale, const TVStack &dv, TVStack &df) {

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Share of a depth that is pushed out in a step, and the most speed that this may give, as a share of √(field·size): more
-// would bounce.
+// Share of a depth that is pushed out in a step, and the most speed that this may give, as a share of √(field·size):
+// more would bounce.
 #define PUSH_SHARE 0.2
 #define PUSH_SPEED 0.03
 // The most of a ball's radius that a step may go for the ball to be as good as a plane.

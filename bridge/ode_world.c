@@ -38,8 +38,8 @@ static double error_reduction(const ck_Spring *spring, double h) {
     return isinf(spring->stiffness) ? 0.8 : h * spring->stiffness / (h * spring->stiffness + spring->damping);
 }
 
-// A rigid bar keeps a little softness, as a share of what its ends' masses make of a force: dWorldStep aborts on redundant
-// constraints without.
+// A rigid bar keeps a little softness, as a share of what its ends' masses make of a force: dWorldStep aborts on
+// redundant constraints without.
 #define BAR_SOFTNESS 2.5e-10
 #define CONTACT_SOFTNESS 5e-13
 

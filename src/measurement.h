@@ -8,7 +8,7 @@
 typedef struct ck_Measurement {
     ck_RunStatus status;
     char reason[256];
-    double cpu, time_step;                 // s of the measured pass, s
+    double cpu, time_step;             // s of the measured pass, s
     double values[CK_METRIC_CAPACITY]; // in the order of the metric table; NaN where one does not apply
 } ck_Measurement;
 

@@ -181,7 +181,8 @@ static double energy_path_over(const ck_Model *model, const ck_Trajectory *traje
 }
 
 static const ck_Metric metrics[] = {
-    {"sag", "1", "Largest drop of a free particle below the highest pin at the end / size", CK_TRUTH_OF_STATE, .at = sag_at},
+    {"sag", "1", "Largest drop of a free particle below the highest pin at the end / size", CK_TRUTH_OF_STATE,
+     .at = sag_at},
     {"stretch_max", "1", "Largest spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_max_at},
     {"stretch_rms", "1", "Root mean square spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_rms_at},
     {"stretch_peak", "1", "Largest spring strain of the whole run", CK_TRUTH_OF_STATE, .over = stretch_peak_over},

@@ -156,7 +156,8 @@ static double bullet_share(double q, uint32_t iterations) {
 }
 
 // Damping explicit, for two substeps at once where it leaves a relative speed its direction; the length that the
-// correction is made for is held for twice as many. Then each sweep takes its share off what is left, at most all of it.
+// correction is made for is held for twice as many. Then each sweep takes its share off what is left, at most all of
+// it.
 static void bullet_link(Oscillator *o) {
     double share = bullet_share(o->k * o->dt * o->dt / o->m, o->iterations);
     int apart = 4 * o->c / o->m * o->dt > 1 ? 1 : 2;
@@ -238,8 +239,8 @@ static double xpbd_stretch(const Link *link) {
     return link->multiplier * ((1 + gamma) * link->weight + compliance) - (1 + gamma) * link->ahead;
 }
 
-// λ·W/κ = f(l + ahead)/h(l), solved for l by fixed point: f is nearly linear, each round gains a digit or more. Bars are
-// not corrected, which is as if for their own length.
+// λ·W/κ = f(l + ahead)/h(l), solved for l by fixed point: f is nearly linear, each round gains a digit or more. Bars
+// are not corrected, which is as if for their own length.
 static double bullet_stretch(const Link *link) {
     double rest = link->spring->rest,
            share = bullet_share(link->spring->stiffness * link->dt * link->dt * link->weight, 1);

@@ -1,6 +1,6 @@
-// A model in units of its own size and mass, for engines that have lengths and masses of their own: tolerances, margins,
-// grids. So they see every body as one of a metre or two and particles of a kilogram or two, whatever units its author
-// thinks in.
+// A model in units of its own size and mass, for engines that have lengths and masses of their own: tolerances,
+// margins, grids. So they see every body as one of a metre or two and particles of a kilogram or two, whatever units
+// its author thinks in.
 #ifndef CK_SCALED_MODEL_H
 #define CK_SCALED_MODEL_H
 

@@ -3,7 +3,6 @@
 #include "engine.h"
 #include "scene.h"
 
-
 #define OPTIONAL CYAML_FLAG_OPTIONAL
 #define REQUIRED CYAML_FLAG_DEFAULT
 

@@ -52,7 +52,8 @@ static bool is_header_sound(const Header *header, const ck_Truth *truth, const c
     for (int i = 0; sound && i < CK_TRUTH_MAX_PATHS; i++)
         sound = i < header->path_count ? header->frame_counts[i] >= 1 && header->frame_counts[i] <= most
                                        : !header->frame_counts[i];
-    return sound && !header->unused && header->horizon >= 0 && header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
+    return sound && !header->unused && header->horizon >= 0 &&
+           header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
 }
 
 // Reads the paths and holds them against the header's hash, and an equilibrium against its own forces.

@@ -30,8 +30,8 @@ bool ck_truth_is_even_chain(const ck_Model *model) {
 }
 
 bool ck_truth_is_falling(const ck_Model *model) {
-    bool falling = !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE)) &&
-                   ck_springs_start_at_rest(model);
+    bool falling =
+        !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE)) && ck_springs_start_at_rest(model);
     // springs have nothing to do only where all particles are pushed alike
     double first[3], field[3];
     ck_model_field(model, 0, first);

@@ -290,8 +290,7 @@ ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position
     double g = ck_length(model->gravity), bar[3] = {0}, side[3] = {0}, down[3],
            length = model->spring_count ? model->springs[0].rest : 1, start = 0;
     bool fits = model->particle_count == 2 && model->spring_count == 1 && model->pinned[0] && !model->pinned[1] &&
-                g > 0 && (model->terms & CK_TERM_RIGID) && !(model->terms & others) &&
-                ck_springs_start_at_rest(model);
+                g > 0 && (model->terms & CK_TERM_RIGID) && !(model->terms & others) && ck_springs_start_at_rest(model);
     if (fits) {
         ck_subtract(bar, model->position + 3, model->position);
         for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;

@@ -30,7 +30,8 @@ static ck_Status add_end_of_release(ck_Truth *truth, const ck_Model *model, ck_E
     ck_Status status = ck_stability_frequency(model, &frequency);
     // damping narrows the stable range of 2.78/ω
     double limit = 1 / (frequency + frequency * frequency * ck_stability_damping_time(model) + model->drag);
-    if (!status) status = ck_reference_integrate(&release, model, (int)ck_stability_substeps(model, limit), 0, 0, error);
+    if (!status)
+        status = ck_reference_integrate(&release, model, (int)ck_stability_substeps(model, limit), 0, 0, error);
     if (!status && release.frame_count > model->frame_count)
         status = add_position(truth, model, ck_trajectory_position(&release, model->frame_count), error);
     ck_trajectory_free(&release);

@@ -59,8 +59,7 @@ static bool is_overstretched(const ck_Run *run) {
     double strain = ck_springs_largest_strain(model, ck_trajectory_position(&run->trajectory, last));
     ck_Energy start = ck_energy_at(model, &run->trajectory, 0), end = ck_energy_at(model, &run->trajectory, last);
     double gained = ck_energy_total(&end) - ck_energy_total(&start);
-    bool is_beyond =
-        (model->terms & CK_TERM_RIGID) || gained > BLOW_UP * ck_energy_scale(model, &run->trajectory);
+    bool is_beyond = (model->terms & CK_TERM_RIGID) || gained > BLOW_UP * ck_energy_scale(model, &run->trajectory);
     return strain > 1 && is_beyond;
 }
 

@@ -195,7 +195,8 @@ static void test_invariance(void **state) {
 static void test_units(void **state) {
     (void)state;
     static const char *const texts[] = {
-        "name: drop\ncloth: {rows: 5, columns: 5, spacing: 0.05, mass: 0.144, origin: [0, 0.2, 0], down: [0, 0.6, 0.8]}\n"
+        "name: drop\ncloth: {rows: 5, columns: 5, spacing: 0.05, mass: 0.144, origin: [0, 0.2, 0], down: [0, 0.6, "
+        "0.8]}\n"
         "springs: {stiffness: 500, damping: 0.02, shear: 250}\ngravity: [0, -9.81, 0]\nforce: [0.001, 0, 0.002]\n"
         "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0], restitution: 0.3, friction: 0.5}}, "
         "{sphere: {center: [0.1, 0.05, 0.1], radius: 0.1, restitution: 0.2, friction: 0.3}}]\n"
@@ -279,7 +280,6 @@ static void test_rope_over_edge(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_invariance), cmocka_unit_test(test_units),
-                                       cmocka_unit_test(test_order_of_springs),
-                                       cmocka_unit_test(test_rope_over_edge)};
+                                       cmocka_unit_test(test_order_of_springs), cmocka_unit_test(test_rope_over_edge)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,8 @@ static void test_period(void **state) {
         ck_Trajectory path;
         snprintf(text, sizeof text, CLIMBER, cases[i].origin, cases[i].damping, cases[i].velocity, cases[i].duration);
         integrate(&comparison, &path, text, 16);
-        double k = comparison.model.springs[0].stiffness, m = comparison.model.mass[1], decay = cases[i].damping / m / 2;
+        double k = comparison.model.springs[0].stiffness, m = comparison.model.mass[1],
+               decay = cases[i].damping / m / 2;
         double exact = 2 * 3.14159265358979323846 / sqrt(k / m - decay * decay);
         double unsure = ck_metric_find("period")->unsure(&comparison.model, &path);
         assert_near("period", metric_of(&comparison, &path, "period"), exact, 1e-9 * exact + unsure);
@@ -119,9 +120,10 @@ static void test_energy_drift(void **state) {
 static void test_sag_of_free(void **state) {
     (void)state;
     ck_Comparison comparison;
-    fixture_load(&comparison, "name: slope\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: "
-                              "[2, -3, 0], mass: 1}], bars: [[0, 1], [1, 2]]}\nsprings: {stiffness: 100}\n"
-                              "pins: [first, last]\ngravity: [0, -10, 0]\ntime: {duration: 1, step: 0.1}\n");
+    fixture_load(&comparison,
+                 "name: slope\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: "
+                 "[2, -3, 0], mass: 1}], bars: [[0, 1], [1, 2]]}\nsprings: {stiffness: 100}\n"
+                 "pins: [first, last]\ngravity: [0, -10, 0]\ntime: {duration: 1, step: 0.1}\n");
     ck_Trajectory path;
     assert_int_equal(ck_trajectory_create(&path, &comparison.model, NULL), CK_OK);
     memcpy(path.data, comparison.model.position, 9 * sizeof(double));

@@ -194,8 +194,8 @@ static void test_verdict(void **state) {
         memcpy(ck_trajectory_position(&run.trajectory, frame), comparison.model.position, 9 * sizeof(double));
     ck_verdict(&run, &comparison.truth.reference);
     assert_int_equal(run.status, CK_RUN_OK);
-    // a spring three times its length, reached by falling 0.2 m, and at rest there: 100 N/m would hold 2 J, and the fall
-    // gave 0.65 J
+    // a spring three times its length, reached by falling 0.2 m, and at rest there: 100 N/m would hold 2 J, and the
+    // fall gave 0.65 J
     ck_trajectory_position(&run.trajectory, last)[3 * 2 + 1] -= 0.2;
     ck_verdict(&run, &comparison.truth.reference);
     assert_int_equal(run.status, CK_RUN_OK);
