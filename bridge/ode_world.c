@@ -2,6 +2,7 @@
 #include "engine_list.h"
 #include "ode_contact.h"
 #include "scaled_model.h"
+#include "shape.h"
 #include "stability.h"
 #include "vector.h"
 
@@ -86,15 +87,16 @@ static void translate_contact(const ck_Model *model, ck_Ledger *ledger) {
         (ck_LedgerRow){"friction", 0, "1", "mu", 0, "dContactApprox1, fdir1 along the slip: a cone", CK_APPROXIMATE});
 }
 
-// Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, and at
-// most 1/120 s, 1/240 s where there is contact, and a tenth of drag's time; for QuickStep also k·h²/m ≤ 5 (k·h²·W ≤
-// 10), where 50 iterations leave 1e-9
-// of a spring's error; ≤ 2 where there is contact, with whose friction it converges more slowly: a cloth on a ball
-// shakes at 2.2 and lies still at 1.5.
+// Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, which
+// is the limit itself for a rope, so that half of it is taken there; at most 1/120 s, 1/240 s where there is contact,
+// and a tenth of drag's time. For QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9 of a spring's
+// error; ≤ 2 where there is contact, with whose friction it converges more slowly: a cloth on a ball shakes at 2.2 and
+// lies still at 1.5.
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                       bool quick) {
-    double limit = fmin(fmin(model->collider_count ? 1.0 / 240 : 1.0 / 120, ck_stability_transverse_time(model)),
-                        ck_stability_drag_time(model, 0.1));
+    double across = (ck_shape_is_chain(model) ? 0.5 : 1) * ck_stability_transverse_time(model);
+    double limit =
+        fmin(fmin(model->collider_count ? 1.0 / 240 : 1.0 / 120, across), ck_stability_drag_time(model, 0.1));
     double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
     if (quick && rate > 0) limit = fmin(limit, sqrt((model->collider_count ? 4 : 10) / rate));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};

@@ -66,12 +66,11 @@ static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions 
         ck_Run *run = &comparison->runs[i];
         ck_Settings wanted = ck_comparison_settings(options->engines[i], &comparison->model, options);
         report(options, comparison, i, "measuring");
-        ck_Status status =
-            ck_run_measure(run, &comparison->model, options->engines[i], &wanted, &options->limits, error);
+        ck_Status status = ck_verdict_run(run, &comparison->model, &comparison->truth.reference, options->engines[i],
+                                          &wanted, &options->limits, error);
         comparison->run_count = i + 1;
         for (int step = 0; step < CK_CONSISTENCY_STEPS; step++) comparison->consistency[i][step] = NAN;
         if (status) return status;
-        ck_verdict(run, &comparison->truth.reference);
         if (!ck_comparison_has_path(comparison, i)) continue;
         status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used,
                                       &comparison->truth, error);

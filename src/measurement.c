@@ -11,8 +11,7 @@ ck_Status ck_measurement_take(ck_Measurement *measurement, const ck_Model *model
     ck_Run own = {0}, *run = keep ? keep : &own;
     *measurement = (ck_Measurement){.cpu = NAN, .time_step = NAN};
     for (int i = 0; i < CK_METRIC_CAPACITY; i++) measurement->values[i] = NAN;
-    ck_Status status = ck_run_measure(run, model, engine, wanted, limits, error);
-    if (!status) ck_verdict(run, reference);
+    ck_Status status = ck_verdict_run(run, model, reference, engine, wanted, limits, error);
     if (!status && run->trajectory.frame_count == model->frame_count + 1) {
         for (int i = 0; i < ck_metric_count(); i++)
             if (ck_metric_is_wanted(ck_metric_at(i), model))

@@ -1,6 +1,7 @@
 #include "metric_contact.h"
 
 #include "collider.h"
+#include "shape.h"
 #include "truth_forms.h"
 #include "vector.h"
 
@@ -145,7 +146,7 @@ double ck_metric_wrap_friction_over(const ck_Model *model, const ck_Trajectory *
                                     const ck_Reference *reference) {
     (void)reference;
     int last = model->particle_count - 1, end = trajectory->frame_count - 1;
-    bool fits = ck_truth_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
+    bool fits = ck_shape_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
                 !model->pin_count && last > 1;
     double field[3], first[3], other[3], way[3], time = end * trajectory->step;
     ck_model_mean_field(model, field);

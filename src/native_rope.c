@@ -2,6 +2,7 @@
 // is as good as another.
 #include "engine_list.h"
 #include "native_leapfrog.h"
+#include "shape.h"
 #include "stability.h"
 #include "truth_forms.h"
 #include "vector.h"
@@ -87,7 +88,7 @@ static bool is_taut(const ck_Model *model) {
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
-    if (!ck_truth_is_chain(model))
+    if (!ck_shape_is_chain(model))
         return ck_fail(error, CK_REFUSED, "only a rope without bend springs, or a chain of bars, is tridiagonal");
     if (is_taut(model))
         return ck_fail(error, CK_REFUSED,

@@ -22,7 +22,8 @@ typedef struct Report {
     ck_Ledger ledger;
     int frame_count; // complete frames, the start among them
     double cpu, worst_step;
-    double foreseen; // s that the run would have taken; 0: it was not given up
+    double foreseen;    // s that the run would have taken; 0: it was not given up
+    const char *remark; // a literal of the engine's, or NULL
 } Report;
 
 typedef struct Job {
@@ -66,6 +67,7 @@ static void measure(void *context) {
         ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
         if (is_hopeless(job)) break;
     }
+    if (engine->remark) report->remark = engine->remark(state);
     engine->destroy(state);
 }
 
@@ -105,6 +107,7 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
     run->trajectory.frame_count = report->frame_count;
     run->measured_cpu = report->cpu;
     run->peak_rss_bytes = child->peak_rss_bytes;
+    run->remark = report->remark;
     run->status = status_of_child[child->end];
     double time = fmax(0, report->frame_count - 1) * run->model->step;
     if (child->end != CK_CHILD_DONE) {

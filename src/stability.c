@@ -1,5 +1,6 @@
 #include "stability.h"
 
+#include "shape.h"
 #include "vector.h"
 
 #include <math.h>
@@ -110,6 +111,23 @@ double ck_stability_load(const ck_Model *model) {
     return load;
 }
 
+double ck_stability_swing_load(const ck_Model *model) {
+    double load = ck_stability_load(model), field[3], reach = 0, depth = 0, drop = 0, mass = 0, fastest = 0;
+    ck_model_mean_field(model, field);
+    double g = ck_length(field);
+    if (!ck_shape_is_chain(model) || model->pin_count != 1 || !model->pinned[0] || !(g > 0)) return load;
+    for (int i = 1; i < model->particle_count; i++) {
+        double from[3];
+        ck_subtract(from, model->position + 3 * i, model->position);
+        reach += model->springs[i - 1].rest;
+        depth += model->mass[i] * reach;
+        drop += model->mass[i] * (reach - ck_dot(from, field) / g);
+        mass += model->mass[i];
+        fastest = fmax(fastest, ck_length(model->velocity + 3 * i));
+    }
+    return load * (1 + 2 * fmax(0, drop) / depth + fastest * fastest * mass / (g * depth));
+}
+
 double ck_stability_lightness(const ck_Model *model) {
     double largest = 0;
     for (int i = 0; i < model->particle_count; i++) largest = fmax(largest, weight_ever(model, i));
@@ -117,12 +135,12 @@ double ck_stability_lightness(const ck_Model *model) {
 }
 
 double ck_stability_transverse_time(const ck_Model *model) {
-    double load = ck_stability_load(model);
+    double load = ck_stability_swing_load(model);
     return load > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * load)) : INFINITY;
 }
 
 double ck_stability_bar_time(const ck_Model *model, uint32_t iterations) {
-    double load = ck_stability_load(model), limit = 1.0 / 240;
+    double load = ck_stability_swing_load(model), limit = 1.0 / 240;
     if (load > 0)
         limit = fmin(limit, sqrt(1e-3 * iterations * model->spacing / (ck_stability_lightness(model) * load)));
     return limit;

@@ -32,6 +32,12 @@ double ck_stability_stiffness_rate(const ck_Model *model);
 // No spring of a hanging body carries much more than this at rest.
 double ck_stability_load(const ck_Model *model);
 
+// The largest tension, in N, that a hanging body is likely to carry while it moves: the load, but for a rope on one pin
+// that of a pendulum, as it swings through: load·(1 + 2·drop/depth + v²/(g·depth)), where drop is how far its centre of
+// mass can fall from the start, depth how far below the pin it then is. A rope's end that cracks like a whip pulls
+// more.
+double ck_stability_swing_load(const ck_Model *model);
+
 // The largest √(m·d/load): where a spring under full tension is stepped explicitly across its line, no longer step is
 // stable. In s; INFINITY without load.
 double ck_stability_transverse_time(const ck_Model *model);

@@ -24,8 +24,7 @@ ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Truth *t
                        ck_Error *error) {
     *trial = (ck_Trial){.error = NAN, .sag_error = NAN, .stretch_error = NAN, .cpu = NAN, .cpu_range = NAN};
     ck_Run run = {0};
-    ck_Status status = ck_run_measure(&run, model, engine, wanted, limits, error);
-    if (!status) ck_verdict(&run, &truth->reference);
+    ck_Status status = ck_verdict_run(&run, model, &truth->reference, engine, wanted, limits, error);
     bool has_path = !status && run.trajectory.frame_count == model->frame_count + 1;
     if (has_path) {
         measure(trial, &run, &truth->reference, against);

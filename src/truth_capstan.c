@@ -1,4 +1,5 @@
 // A rope that slides over a ball.
+#include "shape.h"
 #include "truth_contact.h"
 #include "truth_forms.h"
 #include "vector.h"
@@ -49,7 +50,7 @@ static bool lies_over(const Capstan *capstan, const ck_Model *model) {
 
 static bool read_capstan(Capstan *capstan, const ck_Model *model) {
     unsigned without = CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY;
-    bool fits = ck_truth_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
+    bool fits = ck_shape_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
                 !model->pin_count && (model->terms & CK_TERM_GRAVITY) && !(model->terms & without) &&
                 model->particle_count > 3;
     if (!fits) return false;

@@ -1,5 +1,6 @@
 #include "truth_forms.h"
 
+#include "shape.h"
 #include "springs.h"
 #include "vector.h"
 
@@ -7,39 +8,6 @@
 
 ck_Status ck_truth_need(bool met, const ck_Model *model, ck_Error *error, const char *wanted) {
     return met ? CK_OK : ck_fail(error, CK_BAD_INPUT, "%s: truth %s needs %s", model->name, model->truth, wanted);
-}
-
-bool ck_truth_is_chain(const ck_Model *model) {
-    if (model->spring_count != model->particle_count - 1 || !model->spring_count) return false;
-    for (int i = 0; i < model->spring_count; i++)
-        if (model->springs[i].a != i || model->springs[i].b != i + 1) return false;
-    return true;
-}
-
-bool ck_truth_is_even_chain(const ck_Model *model) {
-    if (!ck_truth_is_chain(model)) return false;
-    double first[3], other[3];
-    ck_subtract(first, model->position + 3, model->position);
-    for (int i = 1; i < model->spring_count; i++) {
-        ck_subtract(other, model->position + 3 * i + 3, model->position + 3 * i);
-        bool same = ck_distance(first, other) <= 1e-12 * model->size;
-        if (!same || fabs(model->springs[i].rest - model->springs[0].rest) > 1e-12 * model->springs[0].rest)
-            return false;
-    }
-    return true;
-}
-
-bool ck_truth_is_falling(const ck_Model *model) {
-    bool falling =
-        !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE)) && ck_springs_start_at_rest(model);
-    // springs have nothing to do only where all particles are pushed alike
-    double first[3], field[3];
-    ck_model_field(model, 0, first);
-    for (int i = 1; i < model->particle_count && model->spring_count; i++) {
-        ck_model_field(model, i, field);
-        falling &= ck_distance(first, field) <= 1e-12 * ck_length(first);
-    }
-    return falling;
 }
 
 static double compliance(const ck_Spring *spring) {
@@ -50,7 +18,7 @@ ck_Status ck_truth_vertical_chain(const ck_Model *model, double time, double *po
                                   ck_Error *error) {
     (void)time;
     bool fits =
-        ck_truth_is_chain(model) && model->pin_count == 1 && model->pinned[0] && (model->terms & CK_TERM_GRAVITY);
+        ck_shape_is_chain(model) && model->pin_count == 1 && model->pinned[0] && (model->terms & CK_TERM_GRAVITY);
     ck_Status status =
         ck_truth_need(fits && !model->collider_count, model, error,
                       "a rope or chain of bars without bend springs, pinned at its first particle alone, in gravity");
@@ -119,7 +87,7 @@ static double miss(const ck_Model *model, const double *tension, double *positio
 ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
     (void)time;
     int last = model->particle_count - 1;
-    bool fits = ck_truth_is_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] &&
+    bool fits = ck_shape_is_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] &&
                 (model->terms & CK_TERM_GRAVITY);
     ck_Status status = ck_truth_need(fits && !model->collider_count, model, error,
                                      "a rope or chain of bars without bend springs, pinned at both ends, in gravity");
@@ -153,7 +121,7 @@ ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position
 }
 
 ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
-    bool fits = ck_truth_is_falling(model) && !(model->terms & CK_TERM_DRAG);
+    bool fits = ck_shape_is_falling(model) && !(model->terms & CK_TERM_DRAG);
     ck_Status status = ck_truth_need(fits, model, error, "a body without pins, drag, colliders and noise");
     if (status) return status;
     for (int i = 0; i < model->particle_count; i++) {

@@ -17,13 +17,4 @@ ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *positio
 // What the forms ask of a model: fails with "NAME: truth TRUTH needs WANTED" unless met.
 ck_Status ck_truth_need(bool met, const ck_Model *model, ck_Error *error, const char *wanted);
 
-// True for particles joined one after the other by one spring each, and no others: a rope, or a network of such bars.
-bool ck_truth_is_chain(const ck_Model *model);
-
-// True for a chain whose springs are alike and start in one straight line.
-bool ck_truth_is_even_chain(const ck_Model *model);
-
-// True without pins and colliders, and with springs that start at rest: nothing but field and drag moves it.
-bool ck_truth_is_falling(const ck_Model *model);
-
 #endif

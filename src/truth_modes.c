@@ -1,5 +1,6 @@
 #include "truth_modes.h"
 
+#include "shape.h"
 #include "springs.h"
 #include "stability.h"
 #include "truth_forms.h"
@@ -86,7 +87,7 @@ static double velocity_along(const ck_Model *model) {
 
 ck_Status ck_truth_longitudinal_modes(const ck_Model *model, double time, double *position, double *velocity,
                                       ck_Error *error) {
-    bool fits = ck_truth_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && !has_field(model) &&
+    bool fits = ck_shape_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && !has_field(model) &&
                 has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) && velocity_along(model) > 1 - 1e-12 &&
                 model->particle_count <= MAX_MODES && ck_springs_start_at_rest(model) && is_gentle(model);
     ck_Status status = ck_truth_need(fits, model, error,
@@ -119,7 +120,7 @@ static double string_tension(const ck_Model *model) {
 ck_Status ck_truth_taut_string(const ck_Model *model, double time, double *position, double *velocity,
                                ck_Error *error) {
     int last = model->particle_count - 1;
-    bool fits = ck_truth_is_even_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] &&
+    bool fits = ck_shape_is_even_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] &&
                 !has_field(model) && has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) &&
                 velocity_along(model) < 1e-12 && string_tension(model) > 0;
     ck_Status status = ck_truth_need(fits, model, error,
@@ -228,7 +229,7 @@ static void add_bounce(const ck_Model *model, double time, double *position, dou
 ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *position, double *velocity,
                                  ck_Error *error) {
     double along[3], g = ck_length(model->gravity);
-    bool fits = ck_truth_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && has_equal_masses(model) &&
+    bool fits = ck_shape_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && has_equal_masses(model) &&
                 model->particle_count <= 61 && ck_springs_start_at_rest(model) && g > 0 &&
                 velocity_along(model) < 1e-12 &&
                 !(model->terms & (CK_TERM_FORCE | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE));
@@ -317,7 +318,7 @@ ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position
 
 ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *position, double *velocity,
                                   ck_Error *error) {
-    ck_Status status = ck_truth_need(ck_truth_is_falling(model) && model->drag > 0, model, error,
+    ck_Status status = ck_truth_need(ck_shape_is_falling(model) && model->drag > 0, model, error,
                                      "a body without pins, colliders and noise, with drag");
     if (status) return status;
     double fade = exp(-model->drag * time);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static double measure(const ck_Run *run, const char *metric, const ck_Reference *reference) {
     return ck_metric_value(ck_metric_find(metric), run->model, &run->trajectory, reference);
@@ -70,6 +71,11 @@ static void note_contact(ck_Run *run, const ck_Reference *reference) {
               run->model->duration, passed);
 }
 
+static void note_remark(ck_Run *run) {
+    size_t used = strlen(run->reason);
+    if (run->remark) snprintf(run->reason + used, sizeof run->reason - used, "; %s", run->remark);
+}
+
 void ck_verdict(ck_Run *run, const ck_Reference *reference) {
     if (run->status != CK_RUN_OK) return;
     if (run->engine == &ck_null_engine) {
@@ -92,4 +98,33 @@ void ck_verdict(ck_Run *run, const ck_Reference *reference) {
     else if (reference->is_static)
         judge_settled(run, reference, settled);
     note_contact(run, reference);
+    note_remark(run);
+}
+
+// Halvings of a step that an engine's own rule chose.
+#define HALVINGS 3
+
+static bool blew_up(const ck_Run *run) {
+    return run->status == CK_RUN_ENERGY_GAIN || run->status == CK_RUN_DIVERGED || run->status == CK_RUN_OVERSTRETCHED;
+}
+
+ck_Status ck_verdict_run(ck_Run *run, const ck_Model *model, const ck_Reference *reference, const ck_Engine *engine,
+                         const ck_Settings *wanted, const ck_Limits *limits, ck_Error *error) {
+    ck_Settings settings = *wanted;
+    ck_Status status = ck_run_measure(run, model, engine, &settings, limits, error);
+    if (!status) ck_verdict(run, reference);
+    // an origin's step is one of its quirks
+    bool has_rule = !wanted->substeps && engine->method != CK_METHOD_SEED;
+    uint32_t chosen = run->used.substeps;
+    for (int i = 0; i < HALVINGS && has_rule && chosen && !status && blew_up(run); i++) {
+        settings.substeps = 2 * run->used.substeps;
+        ck_run_free(run);
+        status = ck_run_measure(run, model, engine, &settings, limits, error);
+        if (!status) ck_verdict(run, reference);
+        char verdict[sizeof run->reason];
+        memcpy(verdict, run->reason, sizeof verdict);
+        snprintf(run->reason, sizeof run->reason, "%.500s; its own rule chose %u substeps, which blow up: it took %u",
+                 verdict, chosen, settings.substeps);
+    }
+    return status;
 }
