@@ -148,11 +148,12 @@ static double path_rms(const ck_Model *model, const ck_Trajectory *trajectory, c
                        double (*value)(const ck_Model *model, const ck_Trajectory *trajectory, int frame)) {
     double sum = 0;
     if (reference->is_static || reference->trajectory.frame_count < trajectory->frame_count) return NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++) {
+    int frames = reference->ends ? reference->horizon + 1 : trajectory->frame_count;
+    for (int frame = 0; frame < frames; frame++) {
         double off = value(model, trajectory, frame) - value(model, &reference->trajectory, frame);
         sum += off * off;
     }
-    return sqrt(sum / trajectory->frame_count);
+    return sqrt(sum / frames);
 }
 
 static double sag_of(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
@@ -252,6 +253,9 @@ double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_
     if (!reference->trajectory.frame_count && (!reference->is_invariant || metric->truth == CK_TRUTH_OF_STATE))
         return NAN;
     if (metric->truth == CK_TRUTH_OF_STATE && reference->is_static && !metric->at) return NAN;
+    if (metric->truth == CK_TRUTH_OF_STATE && reference->ends &&
+        reference->horizon < last_frame(&reference->trajectory))
+        return NAN;
     if (metric->truth == CK_TRUTH_OF_STATE) return ck_metric_value(metric, model, &reference->trajectory, reference);
     return metric->truth == CK_TRUTH_ZERO || reference->is_static ? 0 : NAN;
 }

@@ -11,6 +11,7 @@ typedef struct ck_Reference {
     bool is_static;
     bool is_invariant; // nothing is known of the shape, only what holds at rest whatever it is
     int horizon;       // the last frame up to which positions can be compared point by point; unused when static
+    bool ends;         // at its horizon: of what follows nothing is known
 } ck_Reference;
 
 // What a metric's truth is.

@@ -2,7 +2,7 @@
 
 #include "collider.h"
 #include "shape.h"
-#include "truth_forms.h"
+#include "truth_capstan.h"
 #include "vector.h"
 
 #include <string.h>
@@ -142,23 +142,44 @@ double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *traj
     return balls ? (double)passed / model->particle_count : NAN;
 }
 
+// A parabola of least squares through an end's way along the rope, over 2·half + 1 frames: m, m/s and m/s² at the
+// middle.
+typedef struct Slide {
+    double way, speed, acceleration;
+} Slide;
+
+static Slide fit_slide(const ck_Model *model, const ck_Trajectory *trajectory, int particle, double sign, int middle,
+                       int half) {
+    double field[3], squares = 0, fourth = 0, way = 0, rate = 0, bend = 0, count = 2 * half + 1,
+                     step = trajectory->step;
+    ck_model_mean_field(model, field);
+    for (int k = -half; k <= half; k++) squares += (double)k * k, fourth += (double)k * k * k * k;
+    for (int k = -half; k <= half; k++) {
+        double from[3];
+        ck_subtract(from, ck_trajectory_position(trajectory, middle + k) + 3 * particle,
+                    model->position + 3 * particle);
+        double slid = sign * ck_dot(from, field) / ck_length(field);
+        way += slid / count;
+        rate += slid * k / squares;
+        bend += slid * (k * k - squares / count) / (fourth - squares * squares / count);
+    }
+    return (Slide){way - bend * squares / count, rate / step, 2 * bend / (step * step)};
+}
+
+// The start, in which tensions find their profile, is left out: motion is that of the second half of the run. The ends
+// bounce against each other; as friction takes its share of whatever tension there is, their means tell.
 double ck_metric_wrap_friction_over(const ck_Model *model, const ck_Trajectory *trajectory,
                                     const ck_Reference *reference) {
     (void)reference;
-    int last = model->particle_count - 1, end = trajectory->frame_count - 1;
-    bool fits = ck_shape_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
-                !model->pin_count && last > 1;
-    double field[3], first[3], other[3], way[3], time = end * trajectory->step;
+    double field[3];
     ck_model_mean_field(model, field);
-    double g = ck_length(field);
-    if (!fits || !(g > 0)) return NAN;
-    ck_subtract(first, model->position + 3, model->position);
-    ck_subtract(other, model->position + 3 * last, model->position + 3 * last - 3);
-    double angle = acos(fmax(-1, fmin(1, ck_dot(first, other) / ck_length(first) / ck_length(other))));
-    ck_subtract(way, ck_trajectory_position(trajectory, end), model->position);
-    double a = -2 * ck_dot(way, field) / g / (time * time);
-    double tension = model->mass[0] * (g + a), far_tension = model->mass[last] * (g - a);
-    return angle > 0.1 && tension > 0 && far_tension > 0 ? fabs(log(far_tension / tension)) / angle : NAN;
+    int frames = trajectory->frame_count - 1, half = frames / 4;
+    bool over_ball = model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE && !model->pin_count;
+    if (!over_ball || !ck_shape_is_chain(model) || half < 2 || !(ck_length(field) > 0)) return NAN;
+    Slide first = fit_slide(model, trajectory, 0, -1, frames - half, half),
+          last = fit_slide(model, trajectory, model->particle_count - 1, 1, frames - half, half);
+    return ck_capstan_friction(model, 0.5 * (first.way + last.way), 0.5 * (first.speed + last.speed),
+                               first.acceleration, last.acceleration);
 }
 
 double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *trajectory,

@@ -3,10 +3,12 @@
 #include "child.h"
 #include "reference.h"
 #include "truth_cache.h"
+#include "truth_capstan.h"
 #include "truth_contact.h"
 #include "truth_forms.h"
 #include "truth_modes.h"
 #include "truth_solve.h"
+#include "vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -19,9 +21,10 @@
 // Adding a truth is one function and one row here.
 static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
-     .solve = ck_truth_solve_equilibrium},
+     .check = ck_truth_equilibrium_check, .solve = ck_truth_solve_equilibrium},
     {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), step halved until two runs agree to 1e-9", false,
-     .terms = CK_TERM_RELEASE, .solve = ck_truth_solve_trajectory},
+     .terms = CK_TERM_RELEASE, .is_chaotic = true, .check = ck_truth_trajectory_check,
+     .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
      true, .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
@@ -40,18 +43,20 @@ static const ck_TruthForm forms[] = {
     {"hanging_chain_modes", CLOSED, "w^2 = (g/l)*zeros of the Laguerre polynomial L_N; shapes L_i", false,
      .at = ck_truth_hanging_chain, .is_linear = true, .off = ck_truth_hanging_chain_off},
     {"pendulum", CLOSED, "sin(theta/2) = sin(theta_0/2)*cd(sqrt(g/L)*t); period 2*pi*sqrt(L/g)/AGM(1, cos(theta_0/2))",
-     false, .at = ck_truth_pendulum},
+     false, .at = ck_truth_pendulum, .nudge = ck_truth_nudge_pendulum},
     {"bounce", CLOSED, "heights e^(2n)*h_0, rest after t_1 + 2*e*v_1/(g*(1 - e))", false, .terms = CK_TERM_PLANE,
      .at = ck_truth_bounce},
     {"slide", CLOSED, "s'' = g_t -+ mu*g_n; stop distance v^2/(2*(mu*g_n - g_t)); sticks for g_t <= mu*g_n", false,
      .terms = CK_TERM_PLANE, .at = ck_truth_slide},
     {"sphere_slide", CLOSED,
      "theta'' = (g/R)*sin(theta) up to cos(theta) = 2/3*cos(theta_0) + v_0^2/(3*g*R), then falls", false,
-     .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide},
+     .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide, .nudge = ck_truth_nudge_sphere_slide},
     {"strike", CLOSED, "comes back at e times the speed it came with", false, .terms = CK_TERM_PLANE | CK_TERM_SPHERE,
      .at = ck_truth_strike},
-    {"capstan", CLOSED, "rope over a ball: dT/dtheta = mu*(T + l*R*g*sin - l*v^2) + l*R*(a + g*cos); light: e^(mu*pi)",
-     false, .terms = CK_TERM_SPHERE, .at = ck_truth_capstan, .off = ck_truth_capstan_off},
+    {"capstan", "rope on its arc",
+     "springs and friction of a chain along the arc over a ball; light: T_2 = T_1*e^(mu*pi)", false,
+     .terms = CK_TERM_SPHERE, .off = ck_truth_capstan_off, .check = ck_truth_capstan_check,
+     .solve = ck_truth_solve_capstan},
 };
 
 int ck_truth_count(void) {
@@ -84,6 +89,7 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {
         if (beyond & (1u << bit))
             return ck_fail(error, CK_BAD_INPUT, "%s: truth %s knows no %s; take another, or none", model->name,
                            model->truth, ck_term_names[bit]);
+    if (form->check) return form->check(model, error);
     if (!form->at) return CK_OK;
     double *state = malloc(6 * sizeof(double) * (size_t)model->particle_count);
     if (!state) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
@@ -109,6 +115,31 @@ static ck_Status add_reference(ck_Truth *truth, const ck_Model *model, ck_Error 
     return status == CK_NO_MEMORY ? ck_fail(error, status, "%s", why.message) : CK_OK;
 }
 
+// The nudge of a start, as a share, whose growth ends the horizon of a closed form, as it does a reference path's.
+#define NUDGE 1e-9
+#define GROWTH 1e4
+
+static ck_Status find_horizon(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
+    ck_Model nudged = *model;
+    size_t count = 3 * (size_t)model->particle_count;
+    double *memory = malloc(3 * count * sizeof *memory), *at = memory + count;
+    if (!memory) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    memcpy(memory, model->position, count * sizeof *memory);
+    nudged.position = memory;
+    truth->form->nudge(&nudged, NUDGE);
+    ck_Status status = CK_OK;
+    for (int frame = 0; frame <= model->frame_count && !status; frame++) {
+        double apart = 0;
+        status = truth->form->at(&nudged, frame * model->step, at, at + count, error);
+        for (size_t i = 0; i < count && !status; i += 3)
+            apart = fmax(apart, ck_distance(at + i, ck_trajectory_position(&truth->paths[0], frame) + i));
+        if (apart > GROWTH * NUDGE * model->size) break;
+        truth->reference.horizon = frame;
+    }
+    free(memory);
+    return status;
+}
+
 // Samples a closed form at the model's frames; a static one once.
 static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
     ck_Trajectory *path = &truth->paths[0];
@@ -124,7 +155,7 @@ static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error)
     truth->path_count = 1;
     truth->reference.horizon = path->frame_count - 1;
     if (!status && truth->form->is_linear) status = add_reference(truth, model, error);
-    if (truth->form->off && truth->path_count == 1) truth->off = truth->form->off(model);
+    if (!status && truth->form->nudge) status = find_horizon(truth, model, error);
     return status;
 }
 
@@ -155,7 +186,14 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     if (truth->reference.is_invariant) return CK_OK;
     status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
     truth->reference.trajectory = truth->paths[0];
-    if (!status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count)
+    if (truth->form->off && !(truth->form->is_linear && truth->path_count > 1)) truth->off = truth->form->off(model);
+    bool is_cut =
+        !status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count;
+    truth->reference.ends = is_cut && !truth->form->is_chaotic;
+    if (is_cut && truth->reference.ends)
+        snprintf(truth->kind, sizeof truth->kind, "%s to %.3g s, as it is unstable", truth->form->kind,
+                 truth->reference.horizon * model->step);
+    else if (is_cut)
         snprintf(truth->kind, sizeof truth->kind, "%s, points to %.3g s, then an ensemble of %d", truth->form->kind,
                  truth->reference.horizon * model->step, truth->path_count);
     return status;
@@ -167,7 +205,7 @@ double ck_truth_uncertainty(const ck_Truth *truth, const ck_Model *model, const 
     // what a form is off in positions it is, as a share, in what is read off them
     double spread = fmax(DBL_EPSILON, truth->off) * fmax(strcmp(metric->unit, "1") ? 0 : 1, fabs(value));
     if (metric->unsure) spread = fmax(spread, metric->unsure(model, &truth->reference.trajectory));
-    bool is_ensemble = truth->form->solve && !truth->reference.is_static && truth->path_count > 2;
+    bool is_ensemble = truth->form->is_chaotic && truth->path_count > 2;
     for (int i = 1; i < truth->path_count; i++) {
         // a path of one frame has no whole-run metrics
         if (!metric->at && truth->reference.is_static) continue;

@@ -25,6 +25,13 @@ typedef struct ck_TruthForm {
     // It is of small motions: where the scene can be integrated, that says how far it is off, in place of off.
     bool is_linear;
 
+    // Beyond its horizon the paths are an ensemble, which bounds what is read off whole states.
+    bool is_chaotic;
+    // Moves the start by a share of the size, to one that the form is for as well. NULL: its answer is stable.
+    void (*nudge)(ck_Model *model, double share);
+    // Whether it is for such a model, in the words of "truth NAME needs …". NULL: what at says at time 0.
+    ck_Status (*check)(const ck_Model *model, ck_Error *error);
+
     // Fills paths, path_count and the reference's horizon. Errors: CK_REFUSED where there is no such truth,
     // CK_NO_MEMORY.
     ck_Status (*solve)(struct ck_Truth *truth, const ck_Model *model, ck_Error *error);

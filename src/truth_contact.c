@@ -213,6 +213,21 @@ ck_Status ck_truth_sphere_slide(const ck_Model *model, double time, double *posi
     return CK_OK;
 }
 
+void ck_truth_nudge_sphere_slide(ck_Model *model, double share) {
+    const ck_Collider *ball = &model->colliders[0];
+    double out[3], field[3], way[3];
+    ck_subtract(out, model->position, ball->point);
+    double radius = ck_length(out);
+    for (int axis = 0; axis < 3; axis++) out[axis] /= radius;
+    ck_model_field(model, 0, field);
+    ck_tangential(way, field, out);
+    if (!(ck_length(way) > 1e-12 * ck_length(field))) ck_tangential(way, model->velocity, out);
+    ck_add_scaled(out, share / ck_length(way), way);
+    double length = ck_length(out);
+    memcpy(model->position, ball->point, 3 * sizeof(double));
+    ck_add_scaled(model->position, radius / length, out);
+}
+
 ck_Status ck_truth_strike(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
     bool fits = model->particle_count == 1 && model->collider_count == 1 &&
                 !(model->terms & (CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG)) && !model->pin_count;

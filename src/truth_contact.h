@@ -16,15 +16,11 @@ ck_Status ck_truth_slide(const ck_Model *model, double time, double *position, d
 ck_Status ck_truth_sphere_slide(const ck_Model *model, double time, double *position, double *velocity,
                                 ck_Error *error);
 
+// Puts it so much farther down the ball, along its way.
+void ck_truth_nudge_sphere_slide(ck_Model *model, double share);
+
 // A particle that flies straight at a ball, or at a plane along its normal, without any field, and comes back at e
 // times its speed.
 ck_Status ck_truth_strike(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
-
-// A chain over the upper half of a ball, hanging down on both sides, that slides towards its last particle:
-// dT/dθ = μ·(T + λ·R·g·sin θ − λ·v²) + λ·R·(a + g·cos θ). Without mass of its own T_2 = T_1·e^(μ·π).
-ck_Status ck_truth_capstan(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
-// What its nodes make of it: a polygon of n corners holds [(cos ½δ + μ·sin ½δ)/(cos ½δ − μ·sin ½δ)]^n, δ = π/n, and
-// the stretch. Not in it: the start, before tensions have found their profile.
-double ck_truth_capstan_off(const ck_Model *model);
 
 #endif

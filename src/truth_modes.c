@@ -316,6 +316,21 @@ ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position
     return CK_OK;
 }
 
+void ck_truth_nudge_pendulum(ck_Model *model, double share) {
+    double bar[3], down[3];
+    ck_subtract(bar, model->position + 3, model->position);
+    double length = ck_length(bar), g = ck_length(model->gravity);
+    for (int axis = 0; axis < 3; axis++) {
+        bar[axis] /= length;
+        down[axis] = model->gravity[axis] / g;
+    }
+    ck_tangential(down, down, bar);
+    ck_add_scaled(bar, share / ck_length(down), down);
+    double turned = ck_length(bar);
+    memcpy(model->position + 3, model->position, 3 * sizeof(double));
+    ck_add_scaled(model->position + 3, length / turned, bar);
+}
+
 ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *position, double *velocity,
                                   ck_Error *error) {
     ck_Status status = ck_truth_need(ck_shape_is_falling(model) && model->drag > 0, model, error,

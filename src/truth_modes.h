@@ -23,6 +23,8 @@ double ck_truth_hanging_chain_off(const ck_Model *model);
 
 // A rigid bar from a pin, let go at rest at any angle.
 ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+// Turns the bar by so much towards its rest.
+void ck_truth_nudge_pendulum(ck_Model *model, double share);
 
 // Any body without pins and colliders whose springs start at rest, falling with drag.
 ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *position, double *velocity,

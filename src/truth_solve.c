@@ -3,6 +3,7 @@
 #include "equilibrium.h"
 #include "reference.h"
 #include "stability.h"
+#include "truth_forms.h"
 
 #include <string.h>
 
@@ -10,6 +11,21 @@
 // itself.
 #define NUDGE 1e-3
 #define STARTS 4
+
+ck_Status ck_truth_equilibrium_check(const ck_Model *model, ck_Error *error) {
+    ck_Status status = ck_truth_need(!(model->terms & CK_TERM_RIGID), model, error,
+                                     "springs that stretch: rigid bars have no energy to be least; for them there are "
+                                     "vertical_chain, catenary and rest");
+    if (!status)
+        status = ck_truth_need(model->pin_count > 0, model, error, "pins: without them the body falls for ever");
+    return status ? status
+                  : ck_truth_need(ck_stability_load(model) > 0, model, error, "gravity or a force on what is free");
+}
+
+ck_Status ck_truth_trajectory_check(const ck_Model *model, ck_Error *error) {
+    return ck_truth_need(!(model->terms & CK_TERM_RIGID), model, error,
+                         "springs: its integrator has no rigid bars; for them there are pendulum and free_fall");
+}
 
 // Adds a path of a single frame at rest.
 static ck_Status add_position(ck_Truth *truth, const ck_Model *model, const double *position, ck_Error *error) {

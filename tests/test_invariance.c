@@ -272,8 +272,8 @@ static void test_rope_over_edge(void **state) {
         ck_trajectory_free(&trajectory);
         print_message("%s: %.4f\n", names[i], friction[i]);
         assert_near(names[i], friction[i], friction[0], 0.01 * 0.3);
-        // μ = 0.3, and what the rope's own weight adds, 3 %
-        assert_near(names[i], friction[i], 0.3, 0.03 * 0.3);
+        // a polygon of corners of δ = 0.1 holds δ²/12·(1 + μ²) more than the round rope, and its weights bounce
+        assert_near(names[i], friction[i], 0.3, 0.003);
     }
     ck_comparison_free(&comparison);
 }
