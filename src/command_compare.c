@@ -4,15 +4,16 @@
 #include <stdio.h>
 #include <string.h>
 
-// Where one engine stands apart from the others by more than these do among themselves, says which.
+// Says which engine stands apart, if any does.
 static void print_outliers(const ck_Comparison *comparison) {
     for (int i = 0; i < ck_metric_count(); i++) {
         const ck_Metric *metric = ck_metric_at(i);
         if (!metric->at || !ck_metric_is_wanted(metric, &comparison->model)) continue;
         ck_Outlier outlier = ck_outlier_find(comparison, metric);
-        if (outlier.run < 0 || !(outlier.distance > 3 * outlier.rest) || outlier.distance < 1e-9) continue;
-        printf("  outlier in %s: %s, %.1e from the others, which are %.1e apart\n", metric->name,
-               comparison->runs[outlier.run].engine->name, outlier.distance, outlier.rest);
+        if (outlier.run < 0) continue;
+        printf(outlier.has_truth ? "  farthest from the truth in %s: %s, %.1e; the others %.1e\n"
+                                 : "  outlier in %s: %s, %.1e from the others, which are %.1e apart\n",
+               metric->name, comparison->runs[outlier.run].engine->name, outlier.distance, outlier.rest);
     }
 }
 

@@ -107,5 +107,8 @@ void ck_print_summary(const ck_Comparison *comparison) {
     printf("%-18s %-16s %-13s %10s %9s %9s %9s\n", "scene", "engine", "status", "sag", "error", "rms error",
            "ms CPU/s");
     for (int i = 0; i < comparison->run_count; i++) print_engine(comparison, i);
+    // what is missing is said, in place of a column of dashes
+    const ck_Truth *truth = &comparison->truth;
+    if (truth->form && !truth->path_count && !truth->reference.is_invariant) printf("  truth: %s\n", truth->kind);
     fflush(stdout);
 }

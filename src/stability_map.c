@@ -44,13 +44,19 @@ static const char *const class_names[] = {"ok",      "unsettled", "overstretched
 enum { CLASS, DT, STRAIN_EXCESS, SPEED, PREDICTED, STABLE, UNSTABLE };
 
 // For λ = −1 of one mode. Symplectic Euler with implicit damping: Ω² = 4 + 2·g, with Ω = ω·dt, g = damping·dt.
-// Tension across springs stepped explicitly: 2/ω of what it alone would swing with.
-double ck_stability_limit(ck_Method method, double frequency, double damping, double transverse) {
-    double squared = frequency * frequency;
+static double limit_of(ck_Method method, ck_Vibration motion) {
+    double squared = motion.frequency * motion.frequency, damping = motion.damping;
+    if (!(squared > 0)) return INFINITY;
+    return method == CK_METHOD_VELOCITY_VERLET ? ck_stability_verlet_limit(motion.frequency, damping)
+                                               : (damping + sqrt(damping * damping + 4 * squared)) / squared;
+}
+
+double ck_stability_limit(ck_Method method, ck_Vibration fastest, ck_Vibration across) {
     switch (method) {
-    case CK_METHOD_VELOCITY_VERLET: return ck_stability_verlet_limit(frequency, damping);
-    case CK_METHOD_SYMPLECTIC_EULER: return (damping + sqrt(damping * damping + 4 * squared)) / squared;
-    case CK_METHOD_SEMI_IMPLICIT_ODE: return isfinite(transverse) ? transverse : NAN;
+    case CK_METHOD_VELOCITY_VERLET:
+    case CK_METHOD_SYMPLECTIC_EULER: return fmin(limit_of(method, fastest), limit_of(method, across));
+    // only tension across springs is stepped explicitly
+    case CK_METHOD_SEMI_IMPLICIT_ODE: return across.frequency > 0 ? 2 / across.frequency : NAN;
     default: return NAN;
     }
 }
@@ -114,9 +120,9 @@ static double find_largest(const ck_Model *model, const double *position, bool i
 
 static void measure_rest(ck_StabilityRest *rest, const ck_Model *model, double *memory) {
     double across = find_largest(model, rest->position, true, memory);
-    rest->transverse = across > 0 ? 2 / sqrt(across) : INFINITY;
-    rest->frequency = sqrt(find_largest(model, rest->position, false, memory));
-    rest->damping = damping_of_motion(model, rest->position, memory);
+    rest->across = (ck_Vibration){sqrt(fmax(0, across)), 0};
+    rest->fastest.frequency = sqrt(find_largest(model, rest->position, false, memory));
+    rest->fastest.damping = damping_of_motion(model, rest->position, memory);
     rest->strain = ck_springs_largest_strain(model, rest->position);
 }
 
@@ -163,7 +169,7 @@ static void add_engine(ck_StabilityMap *map, const ck_Engine *engine) {
                     map->cases[map->case_count++] =
                         (ck_StabilityCase){engine, false, false, stiffnesses[i], shares[share], iterations};
     // without damping a method whose own rest is elsewhere swings about it for ever, which is no blow-up
-    bool has_limit = !isnan(ck_stability_limit(engine->method, 1, 0, 1));
+    bool has_limit = !isnan(ck_stability_limit(engine->method, (ck_Vibration){1, 0}, (ck_Vibration){1, 0}));
     for (int undamped = 0; undamped <= has_limit; undamped++)
         map->cases[map->case_count++] = (ck_StabilityCase){engine, true, undamped, 1, NAN, 0};
 }
@@ -342,13 +348,17 @@ static bool is_blow_up(Class class) {
     return class == DIVERGED || class == ENERGY_GAIN || class == CLAMPED;
 }
 
-static double damping_of(const ck_StabilityMap *map, const ck_StabilityCase *one) {
-    return one->is_undamped ? 0 : rest_of(map, one)->damping + map->comparison->model.drag;
+static double predict(const ck_StabilityMap *map, const ck_StabilityCase *one) {
+    const ck_StabilityRest *rest = rest_of(map, one);
+    ck_Vibration fastest = rest->fastest, across = rest->across;
+    fastest.damping = one->is_undamped ? 0 : fastest.damping + map->comparison->model.drag;
+    across.damping = one->is_undamped ? 0 : map->comparison->model.drag;
+    return ck_stability_limit(one->engine->method, fastest, across);
 }
 
 // Doubles or halves from the explicit limit to a pair of steps, one stable and one not, and halves their ratio.
 static ck_Status bisect(const ck_StabilityMap *map, const ck_StabilityCase *one, ck_JournalRow *row, ck_Error *error) {
-    double stable = NAN, unstable = NAN, dt = 2 / rest_of(map, one)->frequency;
+    double stable = NAN, unstable = NAN, dt = 2 / rest_of(map, one)->fastest.frequency;
     Probe now = {.class = OK};
     ck_Status status = CK_OK;
     while (!status && !(unstable / stable < CLOSE) && dt < LONGEST && dt > 1e-7) {
@@ -376,10 +386,9 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     const ck_StabilityMap *map = context;
     const ck_StabilityCase *one = &map->cases[index];
     const ck_StabilityRest *rest = rest_of(map, one);
-    row->values[PREDICTED] =
-        ck_stability_limit(one->engine->method, rest->frequency, damping_of(map, one), rest->transverse);
+    row->values[PREDICTED] = predict(map, one);
     if (one->is_critical) return bisect(map, one, row, error);
-    double dt = one->share * 2 / rest->frequency;
+    double dt = one->share * 2 / rest->fastest.frequency;
     Probe now;
     ck_Status status = probe(&now, map, one, dt, error);
     row->values[CLASS] = now.class;

@@ -15,14 +15,19 @@ typedef struct ck_StabilityCase {
     uint32_t iterations; // of a cell; 0: the engine's own
 } ck_StabilityCase;
 
+// A small motion about a rest.
+typedef struct ck_Vibration {
+    double frequency; // rad/s
+    double damping;   // 1/s, by springs and drag
+} ck_Vibration;
+
 // A scene's rest at one stiffness.
 typedef struct ck_StabilityRest {
     double stiffness;
-    double *position;  // [3*n] m
-    double frequency;  // rad/s, the highest of small motion about it
-    double damping;    // 1/s, of that motion by the springs' damping
-    double transverse; // s, 2/ω of the highest frequency by tension across springs alone; INFINITY without any
-    double strain;     // the largest
+    double *position;     // [3*n] m
+    ck_Vibration fastest; // of all; damped by springs alone
+    ck_Vibration across;  // the fastest by tension across springs alone, which no spring damps; frequency 0: none
+    double strain;        // the largest
 } ck_StabilityRest;
 
 #define CK_STABILITY_RESTS 3
@@ -44,8 +49,9 @@ void ck_stability_map_free(ck_StabilityMap *map);
 ck_Study ck_stability_map_study(const ck_StabilityMap *map);
 void ck_stability_map_write(const ck_StabilityMap *map, const ck_JournalRow *rows, ck_Csv *csv);
 
-// The longest stable step of a method about a rest, s; NaN: it has none, or none is known.
-//   damping  1/s, of its fastest motion by springs and drag
-double ck_stability_limit(ck_Method method, double frequency, double damping, double transverse);
+// The longest stable step of a method about a rest, s; NaN: it has none, or none is known. It is the least that the
+// fastest motion and that across springs ask for: strong damping along springs, taken implicitly, lengthens the one and
+// does not reach the other.
+double ck_stability_limit(ck_Method method, ck_Vibration fastest, ck_Vibration across);
 
 #endif

@@ -31,7 +31,7 @@ static const ck_TruthForm forms[] = {
      .at = ck_truth_vertical_chain},
     {"catenary", CLOSED,
      "discrete elastic catenary: l_i = L + |T_i|/k, T_i = T_0 - sum of the weights before, shot to the far pin", true,
-     .at = ck_truth_catenary},
+     .at = ck_truth_catenary, .off = ck_truth_catenary_off},
     {"free_fall", CLOSED, "x = x_0 + v_0*t + a*t^2/2", false, .at = ck_truth_free_fall},
     {"terminal_speed", CLOSED, "v = v_t + (v_0 - v_t)*exp(-drag*t), v_t = a/drag", false,
      .at = ck_truth_terminal_speed},

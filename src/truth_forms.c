@@ -82,6 +82,35 @@ static double miss(const ck_Model *model, const double *tension, double *positio
     return ck_length(gap);
 }
 
+// The straight line, for bars that just reach from pin to pin.
+static void lay_straight(const ck_Model *model, double *position) {
+    int last = model->particle_count - 1;
+    double chord[3];
+    ck_subtract(chord, model->position + 3 * last, model->position);
+    double span = ck_length(chord);
+    memcpy(position, model->position, 3 * sizeof(double));
+    for (int i = 1; i <= last; i++) {
+        memcpy(position + 3 * i, position + 3 * i - 3, 3 * sizeof(double));
+        ck_add_scaled(position + 3 * i, model->springs[i - 1].rest / span, chord);
+    }
+}
+
+// By how much bars are longer than their span, / size; below what coordinates resolve there is none.
+static double slack_of_bars(const ck_Model *model) {
+    double length = 0;
+    for (int i = 0; i < model->spring_count; i++) length += model->springs[i].rest;
+    double slack =
+        (length - ck_distance(model->position, model->position + 3 * (model->particle_count - 1))) / model->size;
+    return fabs(slack) < 1e-13 ? 0 : slack;
+}
+
+// A shallow rope of bars sags by √(3/8·slack·span): what coordinates round of its slack, its sag is off by as much over
+// twice that root.
+double ck_truth_catenary_off(const ck_Model *model) {
+    double slack = slack_of_bars(model);
+    return (model->terms & CK_TERM_RIGID) && slack > 0 ? sqrt(slack + 1e-15) - sqrt(slack) : 0;
+}
+
 // Newton with halving on the one unknown vector, the tension at the first pin. The rope's complementary energy is
 // convex in it, so that there is one solution.
 ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
@@ -93,7 +122,10 @@ ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position
                                      "a rope or chain of bars without bend springs, pinned at both ends, in gravity");
     if (status) return status;
     memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
-
+    if ((model->terms & CK_TERM_RIGID) && slack_of_bars(model) <= 0) {
+        lay_straight(model, position);
+        return ck_truth_need(slack_of_bars(model) == 0, model, error, "bars that reach from pin to pin");
+    }
     double chord[3], tension[3], gap[3], jacobian[9];
     double weight = ck_model_free_mass(model) * ck_length(model->gravity);
     ck_subtract(chord, model->position + 3 * last, model->position);

@@ -11,6 +11,9 @@ ck_Status ck_truth_vertical_chain(const ck_Model *model, double time, double *po
 // A rope pinned at both ends, at rest.
 ck_Status ck_truth_catenary(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
 
+// How far coordinates leave it off, / size.
+double ck_truth_catenary_off(const ck_Model *model);
+
 // Any body without pins, drag and colliders, whose springs start at rest.
 ck_Status ck_truth_free_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
 

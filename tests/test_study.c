@@ -130,10 +130,13 @@ static void test_limits(void **state) {
     static const ck_Method methods[] = {CK_METHOD_VELOCITY_VERLET, CK_METHOD_SYMPLECTIC_EULER};
     for (int i = 0; i < 2; i++)
         for (double damping = 0; damping < 300; damping = 3 * damping + 1) {
-            double limit = ck_stability_limit(methods[i], 50, damping, INFINITY);
+            double limit = ck_stability_limit(methods[i], (ck_Vibration){50, damping}, (ck_Vibration){0, 0});
             assert_true(grow(methods[i], 50, damping, 0.999 * limit) < 100);
             assert_true(grow(methods[i], 50, damping, 1.001 * limit) > 1e5);
         }
+    // damping along springs that would allow 6 s does not reach what swings across them: 2/20 s
+    double limit = ck_stability_limit(CK_METHOD_SYMPLECTIC_EULER, (ck_Vibration){27.9, 4800}, (ck_Vibration){20, 0});
+    assert_near("across springs", limit, 0.1, 1e-12);
 }
 
 // Fields of one CSV row whose first fields are these; fails where there is none.
