@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const ck_Engine *all_engines[CK_SCENE_MAX_ENGINES];
 
@@ -61,6 +62,20 @@ static void report(const ck_CompareOptions *options, const ck_Comparison *compar
     if (options->progress) options->progress(comparison->model.name, options->engines[run]->name, doing);
 }
 
+// Finds which rest a run came to, and adds it to the run's reason where it is another than the truth's.
+static ck_Status tell_fold(ck_Comparison *comparison, int index, ck_Error *error) {
+    ck_Run *run = &comparison->runs[index];
+    ck_Fold *fold = &comparison->folds[index];
+    ck_Status status = ck_fold_find(fold, run, &comparison->truth, error);
+    if (status || !ck_fold_is_another(fold, &comparison->truth, &comparison->model)) return status;
+    size_t used = strlen(run->reason);
+    snprintf(
+        run->reason + used, sizeof run->reason - used,
+        "; in another fold than the truth's, whose bottom is %.2g from it and %.1e J above: from its own it is %.2g",
+        fold->apart, fold->energy, fold->own);
+    return CK_OK;
+}
+
 static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
     for (int i = 0; i < options->engine_count; i++) {
         ck_Run *run = &comparison->runs[i];
@@ -70,10 +85,12 @@ static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions 
                                           &wanted, &options->limits, error);
         comparison->run_count = i + 1;
         for (int step = 0; step < CK_CONSISTENCY_STEPS; step++) comparison->consistency[i][step] = NAN;
+        comparison->folds[i] = (ck_Fold){NAN, NAN, NAN};
         if (status) return status;
         if (!ck_comparison_has_path(comparison, i)) continue;
         status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used,
                                       &comparison->truth, error);
+        if (!status) status = tell_fold(comparison, i, error);
         report(options, comparison, i, "restarting");
         if (!status && options->consistency_budget > 0)
             status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget,
@@ -107,7 +124,8 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
     comparison->runs = calloc((size_t)options->engine_count + 1, sizeof *comparison->runs);
     comparison->predictions = calloc((size_t)options->engine_count + 1, sizeof *comparison->predictions);
     comparison->consistency = calloc((size_t)options->engine_count + 1, sizeof *comparison->consistency);
-    if (!comparison->runs || !comparison->predictions || !comparison->consistency)
+    comparison->folds = calloc((size_t)options->engine_count + 1, sizeof *comparison->folds);
+    if (!comparison->runs || !comparison->predictions || !comparison->consistency || !comparison->folds)
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (options->progress) options->progress(comparison->model.name, "truth", "finding");
     ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, error);
@@ -128,7 +146,9 @@ void ck_comparison_free_runs(ck_Comparison *comparison) {
     free(comparison->runs);
     free(comparison->predictions);
     free(comparison->consistency);
+    free(comparison->folds);
     comparison->consistency = NULL;
+    comparison->folds = NULL;
     comparison->runs = NULL;
     comparison->predictions = NULL;
     comparison->run_count = 0;

@@ -5,6 +5,7 @@
 #include "child.h"
 #include "consistency.h"
 #include "engine.h"
+#include "fold.h"
 #include "prediction.h"
 #include "runner.h"
 #include "scene.h"
@@ -41,6 +42,7 @@ typedef struct ck_Comparison {
     ck_Run *runs; // [run_count], one an engine, in the order of options.engines
     ck_Reference *predictions;
     double (*consistency)[CK_CONSISTENCY_STEPS]; // of each run, NaN where it was not measured
+    ck_Fold *folds;                              // of each run
     int run_count;
 } ck_Comparison;
 

@@ -52,6 +52,10 @@ static double energy_of(const ck_Model *model, const double *position, double *g
     return energy;
 }
 
+double ck_equilibrium_energy(const ck_Model *model, const double *position) {
+    return energy_of(model, position, NULL);
+}
+
 static double norm_of_free(const ck_Model *model, const double *gradient) {
     double sum = 0;
     for (int i = 0; i < model->particle_count; i++)

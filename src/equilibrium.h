@@ -32,6 +32,9 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
 ck_Status ck_equilibrium_release(ck_Equilibrium *equilibrium, const ck_Model *model, double nudge, uint64_t seed,
                                  ck_Error *error);
 
+// The energy of any position, J.
+double ck_equilibrium_energy(const ck_Model *model, const double *position);
+
 // |Σ force| / total load of any position: how far from equilibrium it is. Negative: out of memory.
 double ck_equilibrium_residual(const ck_Model *model, const double *position);
 

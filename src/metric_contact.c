@@ -62,32 +62,89 @@ static void center_of_mass(const ck_Model *model, const ck_Trajectory *trajector
     }
 }
 
+// A body that falls on a plane: its lowest point, its speed and the energy of both, per mass.
+typedef struct Flight {
+    const ck_Model *model;
+    const ck_Trajectory *trajectory;
+    const ck_Collider *plane;
+    double base;  // m, from the lowest point to the centre of mass
+    double press; // m/s², of the field into the plane
+} Flight;
+
+typedef struct Height {
+    double gap, speed, energy; // m, m/s away from the plane, J/kg
+} Height;
+
+static Height height_at(const Flight *flight, int frame) {
+    double position[3], velocity[3], normal[3];
+    center_of_mass(flight->model, flight->trajectory, frame, position, velocity);
+    Height height = {.gap = ck_collider_gap(flight->plane, position, normal) - flight->base};
+    height.speed = ck_dot(velocity, normal);
+    height.energy = 0.5 * height.speed * height.speed + flight->press * height.gap;
+    return height;
+}
+
+// The first frame at which the speed is another than that of free flight from the frame before; 0: none.
+static int first_impact(const Flight *flight) {
+    double step = flight->trajectory->step;
+    for (int frame = 1; frame < flight->trajectory->frame_count; frame++) {
+        Height before = height_at(flight, frame - 1), now = height_at(flight, frame);
+        double jump = now.speed - before.speed + flight->press * step;
+        // what no first-order method is off by in a step, and less than any rebound that a step can tell
+        if (before.speed - flight->press * step < 0 && jump > 0.25 * flight->press * step) return frame;
+    }
+    return 0;
+}
+
+// How many impacts there were up to a time since the first, of one after the other hop that last 2·e^j·v/g each, where
+// energy fell to a share in all; its restitution is put there. 0: none fits.
+#define MOST_IMPACTS 12
+
+static int count_impacts(double share, double speed, double press, double since, double slack, double *restitution) {
+    for (int n = 1; n <= MOST_IMPACTS; n++) {
+        double e = pow(share, 0.5 / n), end = 0, start = 0;
+        for (int j = 1; j <= n; j++) {
+            start = end;
+            end += 2 * pow(e, j) * speed / press;
+        }
+        if (since < start - slack || since > end + slack) continue;
+        *restitution = e;
+        return n;
+    }
+    return 0;
+}
+
+// Of the frames of the first hop the one next to its apex tells best: there the height is what is left of an impact. A
+// hop between two frames is told by how many fit; where the body lies still by the next frame, frames are too coarse.
 double ck_metric_restitution_over(const ck_Model *model, const ck_Trajectory *trajectory,
                                   const ck_Reference *reference) {
     (void)reference;
-    const ck_Collider *plane = first_plane(model);
-    double field[3], position[3], velocity[3], normal[3], top = NAN, start = NAN;
-    if (!plane) return NAN;
+    Flight flight = {model, trajectory, first_plane(model), 0, 0};
+    double field[3], normal[3], lowest = INFINITY, restitution = NAN, step = trajectory->step;
+    if (!flight.plane) return NAN;
     ck_model_mean_field(model, field);
-    double press = -ck_dot(field, plane->normal), lowest = INFINITY;
+    flight.press = -ck_dot(field, flight.plane->normal);
     for (int i = 0; i < model->particle_count; i++)
-        lowest = fmin(lowest, ck_collider_gap(plane, model->position + 3 * i, normal));
-    bool falling = false, rising = false;
-    double base = 0;
-    for (int frame = 0; frame < trajectory->frame_count; frame++) {
-        center_of_mass(model, trajectory, frame, position, velocity);
-        double height = ck_collider_gap(plane, position, normal), speed = ck_dot(velocity, normal);
-        if (frame == 0) base = height - lowest;
-        double energy = 0.5 * speed * speed + press * (height - base);
-        if (frame == 0) start = energy;
-        falling |= speed < 0;
-        // the frame next to the apex tells best: there the height is what is left of an impact
-        if (rising && speed <= 0) break;
-        rising |= falling && speed > 0;
-        if (rising || (falling && speed == 0)) top = fmax(0, energy);
-    }
+        lowest = fmin(lowest, ck_collider_gap(flight.plane, model->position + 3 * i, normal));
+    flight.base = height_at(&flight, 0).gap - lowest;
+    int frame = flight.press > 0 ? first_impact(&flight) : 0;
     // a body that starts on the plane has nothing to bounce with
-    return lowest > 1e-3 * model->spacing && press > 0 ? sqrt(top / start) : NAN;
+    if (!frame || !(lowest > 1e-3 * model->spacing)) return NAN;
+    Height before = height_at(&flight, frame - 1), after = height_at(&flight, frame);
+    // until the impact nothing but drag takes energy
+    if (!(model->drag > 0)) before.energy = height_at(&flight, 0).energy;
+    double speed = sqrt(2 * before.energy), since = step - (before.speed + speed) / flight.press;
+    double share = fmax(0, after.energy) / before.energy;
+    // a plane that takes all speed leaves none for hops that a frame could miss
+    double missed = since * flight.press / (2 * speed + since * flight.press);
+    if (share < 1e-9) return missed < 0.02 || flight.plane->restitution == 0 ? 0 : NAN;
+    if (count_impacts(share, speed, flight.press, since, 0.2 * step, &restitution) != 1) return restitution;
+    double returns = (after.speed + sqrt(2 * fmax(0, after.energy))) / flight.press;
+    for (int next = frame; next < trajectory->frame_count && (next - frame) * step <= returns - 0.5 * step; next++) {
+        Height height = height_at(&flight, next);
+        if (fabs(height.speed) <= fabs(after.speed)) after = height;
+    }
+    return sqrt(fmax(0, after.energy) / before.energy);
 }
 
 double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
@@ -106,6 +163,11 @@ double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *traje
     const double *direction = ck_length(start) > ck_metric_still_speed(model) ? start : drive;
     if (!(ck_length(direction) > 0) || !(press > 0)) return NAN;
     ck_add_scaled(line, 1 / ck_length(direction), direction);
+    // what is driven across its way slides along a curve
+    double across[3];
+    memcpy(across, drive, sizeof across);
+    ck_add_scaled(across, -ck_dot(drive, line), line);
+    if (ck_length(across) > 1e-9 * ck_length(field)) return NAN;
     ck_subtract(to, to, from);
     double way = ck_dot(to, line), first = ck_dot(start, line), last = ck_dot(end, line);
     // one that sticks tells nothing but that μ is enough, and one that came back has slid farther than it got

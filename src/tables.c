@@ -85,22 +85,32 @@ static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index)
     }
 }
 
-// The engine against its own finest run: whether it converges at all, not whether it is right.
-static void add_consistency(ck_Csv *csv, const ck_Comparison *comparison, int index) {
-    for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) {
-        double value = comparison->consistency[index][i];
-        if (isnan(value)) continue;
-        ck_csv_text(csv, comparison->model.name);
-        ck_csv_text(csv, comparison->runs[index].engine->name);
-        ck_csv_text(csv, ck_consistency_names[i]);
-        ck_csv_text(csv, "1");
-        ck_csv_number(csv, value);
-        ck_csv_number(csv, 0);
-        ck_csv_text(csv, "its own finest run");
-        ck_csv_number(csv, NAN);
-        ck_csv_number(csv, value);
-        ck_csv_number(csv, NAN);
-    }
+// A value that is an error by itself.
+static void add_distance(ck_Csv *csv, const ck_Comparison *comparison, int index, const char *metric, double value,
+                         const char *to_what) {
+    if (isnan(value)) return;
+    ck_csv_text(csv, comparison->model.name);
+    ck_csv_text(csv, comparison->runs[index].engine->name);
+    ck_csv_text(csv, metric);
+    ck_csv_text(csv, "1");
+    ck_csv_number(csv, value);
+    ck_csv_number(csv, 0);
+    ck_csv_text(csv, to_what);
+    ck_csv_number(csv, NAN);
+    ck_csv_number(csv, value);
+    ck_csv_number(csv, NAN);
+}
+
+// The engine against its own finest run, which tells whether it converges at all, not whether it is right; and which
+// rest it came to.
+static void add_distances(ck_Csv *csv, const ck_Comparison *comparison, int index) {
+    for (int i = 0; i < CK_CONSISTENCY_STEPS; i++)
+        add_distance(csv, comparison, index, ck_consistency_names[i], comparison->consistency[index][i],
+                     "its own finest run");
+    add_distance(csv, comparison, index, "own_rest_rms", comparison->folds[index].own,
+                 "the energy minimum that it is next to");
+    add_distance(csv, comparison, index, "fold_rms", comparison->folds[index].apart,
+                 "from that minimum to the truth's");
 }
 
 static void add_deviations(ck_Csv *csv, const ck_Comparison *comparison) {
@@ -183,7 +193,7 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
         add_series(&tables->csv[CK_SERIES], comparison, comparison->runs[i].engine->name,
                    &comparison->runs[i].trajectory);
         if (ck_comparison_has_path(comparison, i)) add_metrics(&tables->csv[CK_METRICS], comparison, i);
-        add_consistency(&tables->csv[CK_METRICS], comparison, i);
+        add_distances(&tables->csv[CK_METRICS], comparison, i);
     }
     add_truth_series(&tables->csv[CK_SERIES], comparison);
     add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
