@@ -357,6 +357,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
              CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
     .shares_steps = false,
     .order = 1,
+    .rest_order = 2,
     .create = create,
     .step = step,
     .read = read_state,

@@ -38,6 +38,7 @@ typedef struct ck_Engine {
     unsigned terms;    // ck_Term bits it can model
     bool shares_steps; // among threads, with the same result
     int order;         // order of convergence of its elastic motion; 0: it models no elasticity
+    int rest_order;    // of its rest; 0: it is exact at any step, or models no elasticity
 
     // Translates the model into the engine's own parameters, in one named function, and builds its world.
     //   wanted  what the user sets, 0 where the engine's rule decides;  used  out, nothing left at 0 that the engine

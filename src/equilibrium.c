@@ -233,6 +233,40 @@ cleanup:
     return status;
 }
 
+struct ck_Stiffness {
+    Newton newton;
+};
+
+ck_Status ck_stiffness_create(ck_Stiffness **out, const ck_Model *model, const double *position) {
+    ck_Stiffness *stiffness = *out = calloc(1, sizeof *stiffness);
+    if (!stiffness) return CK_NO_MEMORY;
+    ck_Status status = start_newton(&stiffness->newton, model, position);
+    if (!status && !factorise(&stiffness->newton, 0)) status = CK_REFUSED;
+    if (!status) return CK_OK;
+    ck_stiffness_destroy(stiffness);
+    *out = NULL;
+    return status;
+}
+
+ck_Status ck_stiffness_solve(ck_Stiffness *stiffness, const double *force, double *moved) {
+    Newton *newton = &stiffness->newton;
+    pack(newton, force);
+    cholmod_dense *step = cholmod_solve(CHOLMOD_A, newton->factor, newton->gradient, &newton->common);
+    if (!step) return CK_NO_MEMORY;
+    memset(moved, 0, 3 * sizeof(double) * (size_t)newton->model->particle_count);
+    for (int i = 0; i < newton->model->particle_count; i++)
+        if (newton->unknown[i] >= 0)
+            memcpy(moved + 3 * i, (double *)step->x + 3 * newton->unknown[i], 3 * sizeof(double));
+    cholmod_free_dense(&step, &newton->common);
+    return CK_OK;
+}
+
+void ck_stiffness_destroy(ck_Stiffness *stiffness) {
+    if (!stiffness) return;
+    end_newton(&stiffness->newton);
+    free(stiffness);
+}
+
 // Steps a copy of the model, nudged, until it stays still or its duration ends.
 //   position  [3*n] out, m
 static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, double *position, ck_Error *error) {

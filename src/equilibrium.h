@@ -38,6 +38,17 @@ double ck_equilibrium_energy(const ck_Model *model, const double *position);
 // |Σ force| / total load of any position: how far from equilibrium it is. Negative: out of memory.
 double ck_equilibrium_residual(const ck_Model *model, const double *position);
 
+// The stiffness K of a network about a place, factorised.
+typedef struct ck_Stiffness ck_Stiffness;
+
+// Errors: CK_NO_MEMORY; CK_REFUSED where K is not positive definite. The model must outlive it.
+ck_Status ck_stiffness_create(ck_Stiffness **stiffness, const ck_Model *model, const double *position);
+// By how much it gives under small forces, N: moved, [3*n] m, with K·moved = force; 0 where pinned. Errors:
+// CK_NO_MEMORY.
+ck_Status ck_stiffness_solve(ck_Stiffness *stiffness, const double *force, double *moved);
+// Accepts NULL.
+void ck_stiffness_destroy(ck_Stiffness *stiffness);
+
 void ck_equilibrium_free(ck_Equilibrium *equilibrium);
 
 #endif

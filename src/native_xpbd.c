@@ -163,6 +163,7 @@ const ck_Engine ck_native_xpbd = {
     .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
     .shares_steps = true,
     .order = 1,
+    .rest_order = 2,
     .create = create,
     .step = step,
     .read = ck_native_read,

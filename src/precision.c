@@ -177,13 +177,18 @@ static void summarise_order(const ck_Precision *precision, const ck_JournalRow *
                             ck_Csv *csv) {
     int points;
     char reason[200];
-    double order = fit_order(precision, rows, engine, &points), expected = engine->order > 0 ? engine->order : NAN;
+    // the error of a scene at rest is that of the rest: to move wrongly on the way to it costs nothing
+    bool is_static = precision->comparison->truth.reference.is_static;
+    int theory = is_static ? engine->rest_order : engine->order;
+    double order = fit_order(precision, rows, engine, &points), expected = theory > 0 ? theory : NAN;
     if (points < 3)
         snprintf(reason, sizeof reason, "only %d steps have an error between %.3g and %g", points,
                  ABOVE_UNCERTAINTY * precision->uncertainty, COARSEST_FIT);
     else
         snprintf(reason, sizeof reason, "least squares over the %d finest of the steps that the truth can tell",
                  points);
+    if (is_static && engine->order && !engine->rest_order)
+        snprintf(reason, sizeof reason, "at rest it is exact at any step: what is left is the truth's uncertainty");
     add_summary(precision, csv, engine, "order", "1", order, expected, reason);
 }
 
