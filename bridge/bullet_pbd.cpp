@@ -358,6 +358,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .shares_steps = false,
     .order = 1,
     .rest_order = 2,
+    .damped_rest_order = 2,
     .create = create,
     .step = step,
     .read = read_state,

@@ -35,10 +35,11 @@ typedef struct ck_Engine {
     const char *family; // whose code it is: "native", "Bullet", "ODE"
     const char *(*version)(void);
     ck_Method method;
-    unsigned terms;    // ck_Term bits it can model
-    bool shares_steps; // among threads, with the same result
-    int order;         // order of convergence of its elastic motion; 0: it models no elasticity
-    int rest_order;    // of its rest; 0: it is exact at any step, or models no elasticity
+    unsigned terms;        // ck_Term bits it can model
+    bool shares_steps;     // among threads, with the same result
+    int order;             // order of convergence of its elastic motion; 0: it models no elasticity
+    int rest_order;        // of its rest; 0: it is exact at any step, or models no elasticity
+    int damped_rest_order; // of its rest where springs are damped
 
     // Translates the model into the engine's own parameters, in one named function, and builds its world.
     //   wanted  what the user sets, 0 where the engine's rule decides;  used  out, nothing left at 0 that the engine

@@ -164,6 +164,7 @@ const ck_Engine ck_native_xpbd = {
     .shares_steps = true,
     .order = 1,
     .rest_order = 2,
+    .damped_rest_order = 1, // γ̃ sees gravity's push, too
     .create = create,
     .step = step,
     .read = ck_native_read,

@@ -179,7 +179,8 @@ static void summarise_order(const ck_Precision *precision, const ck_JournalRow *
     char reason[200];
     // the error of a scene at rest is that of the rest: to move wrongly on the way to it costs nothing
     bool is_static = precision->comparison->truth.reference.is_static;
-    int theory = is_static ? engine->rest_order : engine->order;
+    bool is_damped = precision->comparison->model.terms & CK_TERM_DAMPING;
+    int theory = !is_static ? engine->order : is_damped ? engine->damped_rest_order : engine->rest_order;
     double order = fit_order(precision, rows, engine, &points), expected = theory > 0 ? theory : NAN;
     if (points < 3)
         snprintf(reason, sizeof reason, "only %d steps have an error between %.3g and %g", points,
@@ -187,9 +188,10 @@ static void summarise_order(const ck_Precision *precision, const ck_JournalRow *
     else
         snprintf(reason, sizeof reason, "least squares over the %d finest of the steps that the truth can tell",
                  points);
-    if (is_static && engine->order && !engine->rest_order)
+    bool is_exact = is_static && engine->order && !engine->rest_order;
+    if (is_exact)
         snprintf(reason, sizeof reason, "at rest it is exact at any step: what is left is the truth's uncertainty");
-    add_summary(precision, csv, engine, "order", "1", order, expected, reason);
+    add_summary(precision, csv, engine, "order", "1", is_exact ? NAN : order, expected, reason);
 }
 
 // The least error of any case of an engine, and the least time to come below each of three.
