@@ -6,9 +6,9 @@
 #include "status.h"
 
 typedef struct ck_BenchOptions {
-    int rounds;    // interleaved repeats of every engine (usually 7)
+    int rounds;    // interleaved repeats of every engine (default 7)
     double budget; // CPU seconds that one repeat may take; what takes longer is left out with its reason
-    int largest;   // side of the largest cloth, in particles (usually 1024)
+    int largest;   // side of the largest cloth, in particles (default 1024)
     void (*progress)(const char *body, const char *engine); // may be NULL
 } ck_BenchOptions;
 

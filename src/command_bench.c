@@ -15,9 +15,9 @@ static void print_help(void) {
     printf("clothcheck bench [--out DIR] [--rounds N] [--largest N]\n\nTimes all engines, interleaved, on cloths of "
            "20x20, "
            "64x64 and 256x256 and a rope of 1000, and native-verlet\nas a cloth grows; writes bench.csv.\n\n"
-           "  --out DIR      write the CSV into DIR (usually out)\n"
-           "  --rounds N     repeats, 1 to 99 (usually 7)\n"
-           "  --largest N    side of the largest cloth in the growth, 16 to 2048 (usually 1024)\n"
+           "  --out DIR      write the CSV into DIR (default out)\n"
+           "  --rounds N     repeats, 1 to 99 (default 7)\n"
+           "  --largest N    side of the largest cloth in the growth, 16 to 2048 (default 1024)\n"
            "  --help         this text\n");
 }
 

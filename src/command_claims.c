@@ -12,7 +12,7 @@ static void show_progress(const char *claim, double value) {
 
 static void print_help(void) {
     printf("clothcheck claims [--out DIR]\n\nTests what was claimed of the two origins: writes claims.csv, sweeps over "
-           "what each claim leaves open, and\nquirks.csv, what each of their quirks costs, into DIR (usually out). "
+           "what each claim leaves open, and\nquirks.csv, what each of their quirks costs, into DIR (default out). "
            "Takes some minutes.\n\n"
            "  --out DIR   write the CSVs into DIR\n  --help      this text\n");
 }

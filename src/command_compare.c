@@ -28,7 +28,7 @@ static void print_help(void) {
     printf(
         "clothcheck compare [SCENE...] [options]\n\nRuns all engines on all scenes (without SCENE: scenes/*.yaml) and "
         "writes\n"
-        "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (usually out).\n\n");
+        "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (default out).\n\n");
     ck_arguments_help(CK_TAKES_TIMING);
 }
 

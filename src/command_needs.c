@@ -37,7 +37,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
 int ck_command_needs(int argc, char **argv) {
     return ck_study_command(argc, argv,
                             "clothcheck needs SCENE [options]\n\nLeaves out one modelled term at a time, and every "
-                            "second particle, and says which of them change any metric by\nmore than --error (usually "
+                            "second particle, and says which of them change any metric by\nmore than --error (default "
                             "0.01), and what each costs; writes needs.csv. The engine is the first that models all\n"
                             "there is, or --engine.",
                             CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR, 60, run);

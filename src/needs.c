@@ -14,6 +14,7 @@ typedef struct Reduced {
     ck_SceneCollider colliders[CK_NEEDS_MOST];
     ck_ScenePlane planes[CK_NEEDS_MOST];
     ck_SceneSphere spheres[CK_NEEDS_MOST];
+    double force[3];
 } Reduced;
 
 // Copies what a change may touch, so that the scene stays as it is.
@@ -105,54 +106,80 @@ static void drop_collider(Reduced *reduced, int collider) {
     if (!last) reduced->file.colliders = NULL;
 }
 
-// Every second row and column, or particle. Pins by number would be others then.
-static bool can_halve(const ck_SceneFile *file) {
+static uint32_t greatest_divisor(uint32_t a, uint32_t b) {
+    return b ? greatest_divisor(b, a % b) : a;
+}
+
+// By what share of its springs in a row a body can do with about half of them and keep its size: a cloth's rows and
+// columns must both come out whole. 0: by none.
+static double halved_share(const ck_SceneFile *file) {
+    if (file->rope)
+        return file->rope->particles > 3 ? floor(file->rope->particles / 2.0) / (file->rope->particles - 1) : 0;
+    if (!file->cloth || file->cloth->rows < 2 || file->cloth->columns < 2) return 0;
+    uint32_t divisor = greatest_divisor(file->cloth->rows - 1, file->cloth->columns - 1);
+    return divisor > 1 ? (divisor + 1) / 2 / (double)divisor : 0;
+}
+
+static bool is_halvable(const ck_SceneFile *file) {
+    return file->rope || file->cloth;
+}
+
+static const char *not_halved(const ck_SceneFile *file) {
+    // pins by number would be others then
     for (uint32_t i = 0; i < file->pins_count; i++)
-        if (strpbrk(file->pins[i], "0123456789")) return false;
-    if (file->release_count || file->network) return false;
-    return file->cloth ? file->cloth->rows > 3 && file->cloth->columns > 3 : file->rope && file->rope->particles > 3;
+        if (strpbrk(file->pins[i], "0123456789")) return "its pins are numbered, and would be others";
+    if (file->release_count) return "it lets pins go";
+    return halved_share(file) > 0 ? NULL : "no coarser grid of square cells has its size";
 }
 
-static uint32_t halve_count(uint32_t count) {
-    return (count + 2) / 2;
+static uint32_t scale_count(uint32_t count, double share) {
+    return (uint32_t)round((count - 1) * share) + 1;
 }
 
-// The body keeps its size and mass. A rope's springs, half as many in a row, have k in proportion to their number; a
-// sheet's, half as many in a row and side by side, keep it.
+// The body keeps its size, its mass and what pushes it. A rope's springs, half as many in a row, have k and c in
+// proportion to their number; a sheet's, half as many in a row and side by side, keep them.
 static void halve(Reduced *reduced, int collider) {
     (void)collider;
+    double share = halved_share(&reduced->file), particles = 1, left = 1;
     if (reduced->file.cloth) {
         ck_SceneCloth *cloth = &reduced->cloth;
-        double along = cloth->spacing * (cloth->columns - 1);
-        cloth->rows = halve_count(cloth->rows);
-        cloth->columns = halve_count(cloth->columns);
-        cloth->spacing = along / (cloth->columns - 1);
-        return;
+        particles = (double)cloth->rows * cloth->columns;
+        cloth->rows = scale_count(cloth->rows, share);
+        cloth->columns = scale_count(cloth->columns, share);
+        cloth->spacing /= share;
+        left = (double)cloth->rows * cloth->columns;
+    } else {
+        ck_SceneRope *rope = &reduced->rope;
+        particles = rope->particles;
+        rope->particles = scale_count(rope->particles, share);
+        rope->spacing /= share;
+        left = rope->particles;
+        reduced->springs.stiffness *= share;
+        reduced->springs.bend *= share;
+        reduced->springs.damping *= share;
     }
-    ck_SceneRope *rope = &reduced->rope;
-    double links = rope->particles - 1;
-    rope->particles = halve_count(rope->particles);
-    double share = (rope->particles - 1) / links;
-    rope->spacing /= share;
-    reduced->springs.stiffness *= share;
-    reduced->springs.damping *= share;
+    for (int axis = 0; axis < 3 && reduced->file.force; axis++) {
+        reduced->force[axis] = reduced->file.force[axis] * particles / left;
+        if (axis == 2) reduced->file.force = reduced->force;
+    }
 }
 
 static const struct {
     const char *name;
     bool (*is_there)(const ck_SceneFile *file);
     void (*leave_out)(Reduced *reduced, int collider);
-    bool of_each_collider, moves_particles; // the particles are others: paths cannot be compared
+    bool of_each_collider, moves_particles;          // the particles are others: paths cannot be compared
+    const char *(*cannot)(const ck_SceneFile *file); // why it cannot be left out; may be NULL
 } terms[] = {
-    {"shear", has_shear, drop_shear, false, false},
-    {"bend", has_bend, drop_bend, false, false},
-    {"spring damping", has_damping, drop_damping, false, false},
-    {"drag", has_drag, drop_drag, false, false},
-    {"friction", has_friction, drop_friction, false, false},
-    {"restitution", has_restitution, drop_restitution, false, false},
-    {"collider", has_collider, drop_collider, true, false},
-    {"noise", has_noise, drop_noise, false, false},
-    {"every second particle", can_halve, halve, false, true},
+    {"shear", has_shear, drop_shear, false, false, NULL},
+    {"bend", has_bend, drop_bend, false, false, NULL},
+    {"spring damping", has_damping, drop_damping, false, false, NULL},
+    {"drag", has_drag, drop_drag, false, false, NULL},
+    {"friction", has_friction, drop_friction, false, false, NULL},
+    {"restitution", has_restitution, drop_restitution, false, false, NULL},
+    {"collider", has_collider, drop_collider, true, false, NULL},
+    {"noise", has_noise, drop_noise, false, false, NULL},
+    {"every second particle", is_halvable, halve, false, true, not_halved},
 };
 #define TERMS ((int)(sizeof terms / sizeof *terms))
 
@@ -209,6 +236,12 @@ _Static_assert(METRICS + CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOUR
 static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Error *error) {
     const ck_Needs *needs = context;
     const ck_NeedsCase *one = &needs->cases[index];
+    const char *why = terms[one->term].cannot ? terms[one->term].cannot(needs->comparison->scene.file) : NULL;
+    if (why) {
+        row->status = CK_RUN_REFUSED;
+        snprintf(row->reason, sizeof row->reason, "not tried: %s", why);
+        return CK_OK;
+    }
     Reduced *reduced = calloc(1, sizeof *reduced);
     if (!reduced) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     copy_file(reduced, needs->comparison->scene.file);
@@ -242,10 +275,11 @@ ck_Study ck_needs_study(const ck_Needs *needs) {
 }
 
 // By how much a metric changes: as it is where it is dimensionless, else relative. One that starts or ends to apply has
-// changed by more than any tolerance.
+// changed by more than any tolerance; where right is none (jitter, drift), only its values say anything.
 static double change_of(const ck_Metric *metric, double with, double without) {
+    bool is_of_motion = metric->truth == CK_TRUTH_OF_STATE;
     if (isnan(with) && isnan(without)) return NAN;
-    if (isnan(with) || isnan(without)) return INFINITY;
+    if (isnan(with) || isnan(without)) return is_of_motion ? INFINITY : NAN;
     double scale = strcmp(metric->unit, "1") ? fmax(fabs(with), fabs(without)) : 1;
     return scale > 0 ? fabs(without - with) / scale : 0;
 }
@@ -253,7 +287,7 @@ static double change_of(const ck_Metric *metric, double with, double without) {
 static bool add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, ck_Csv *csv, const char *metric,
                     const char *unit, double with, double without, double change) {
     bool matters = change > needs->tolerance;
-    if (isnan(change)) return false;
+    if (isnan(change) && *metric) return false;
     ck_csv_text(csv, needs->comparison->model.name);
     ck_csv_text(csv, needs->engine->name);
     ck_csv_text(csv, needs->cases[index].name);
@@ -263,7 +297,7 @@ static bool add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, 
     ck_csv_number(csv, without);
     ck_csv_number(csv, change);
     ck_csv_number(csv, needs->tolerance);
-    ck_csv_text(csv, matters ? "yes" : "no");
+    ck_csv_text(csv, !*metric ? "" : matters ? "yes" : "no");
     ck_csv_number(csv, needs->whole.cpu);
     ck_csv_number(csv, row->values[CPU]);
     ck_csv_text(csv, ck_run_status_names[row->status]);
@@ -274,6 +308,11 @@ static bool add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, 
 void ck_needs_write(const ck_Needs *needs, const ck_JournalRow *rows, ck_Csv *csv) {
     for (int i = 0; i < needs->case_count; i++) {
         if (!rows[i].is_done) continue;
+        if (rows[i].status == CK_RUN_REFUSED) {
+            add_row(needs, &rows[i], i, csv, "", "", NAN, NAN, NAN);
+            printf("%-24s %s\n", needs->cases[i].name, rows[i].reason);
+            continue;
+        }
         char changed[400] = "";
         size_t used = 0;
         for (int k = 0; k < ck_metric_count(); k++) {
@@ -282,13 +321,17 @@ void ck_needs_write(const ck_Needs *needs, const ck_JournalRow *rows, ck_Csv *cs
             bool is_distance = !strcmp(metric->name, "position_rms");
             if (!ck_metric_is_wanted(metric, &needs->comparison->model)) continue;
             double change = is_distance ? rows[i].values[DISTANCE] : change_of(metric, with, without);
-            if (add_row(needs, &rows[i], i, csv, metric->name, metric->unit, is_distance ? NAN : with,
-                        is_distance ? NAN : without, change) &&
-                used < sizeof changed)
-                used += (size_t)snprintf(changed + used, sizeof changed - used, "%s%s by %.2g", used ? ", " : "",
-                                         metric->name, change);
+            if (!add_row(needs, &rows[i], i, csv, metric->name, metric->unit, is_distance ? NAN : with,
+                         is_distance ? NAN : without, change) ||
+                used >= sizeof changed)
+                continue;
+            const char *separator = used ? ", " : "";
+            used += (size_t)(isinf(change) ? snprintf(changed + used, sizeof changed - used, "%s%s (has none %s)",
+                                                      separator, metric->name, isnan(with) ? "with" : "without")
+                                           : snprintf(changed + used, sizeof changed - used, "%s%s by %.2g", separator,
+                                                      metric->name, change));
         }
-        bool has_failed = rows[i].values[CPU] != rows[i].values[CPU];
+        bool has_failed = isnan(rows[i].values[CPU]);
         printf("%-24s %s%s (CPU %.3g s with, %.3g s without)\n", needs->cases[i].name,
                has_failed ? "is needed to run at all: "
                : used     ? "is needed: changes "
