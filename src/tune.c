@@ -1,15 +1,20 @@
 #include "tune.h"
 
+#include "tune_grid.h"
+
 #include <math.h>
 #include <nlopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// Evaluations of the global search, and of the local one that starts from its best.
+// Evaluations of the global search, of the local one that starts from its best, of the one over whole numbers, and of
+// all that would be cheaper.
 #define GLOBAL 80
 #define LOCAL 60
-#define MOST_POINTS (GLOBAL + LOCAL + 1)
+#define REFINING 240
+#define EXHAUSTING 800
+#define MOST_POINTS (GLOBAL + LOCAL + REFINING + EXHAUSTING + 1)
 // A setting that fails, or misses the tolerance, counts as this much more work for each power of e.
 #define PENALTY 20
 #define FAILED 1e3
@@ -42,6 +47,10 @@ typedef struct Search {
 
 enum { ERROR, SAG_ERROR, STRETCH_ERROR, CPU, TIME_STEP };
 
+static double work_of(const Search *search, const ck_Settings *settings) {
+    return settings->substeps * (1 + fmax(1, settings->iterations)) / search->comparison->model.step;
+}
+
 static ck_TunePoint point_at(const Search *search, const double *x) {
     ck_TunePoint point = {.settings = search->automatic, .stiffness = 1};
     for (int i = 0; i < search->range_count; i++) {
@@ -54,8 +63,7 @@ static ck_TunePoint point_at(const Search *search, const double *x) {
             ck_setting_set(&point.settings, (ck_Setting)range->variable,
                            ck_setting_keys[range->variable].is_whole ? fmax(1, round(value)) : value);
     }
-    double sweeps = 1 + fmax(1, point.settings.iterations);
-    point.work = point.settings.substeps * sweeps / search->comparison->model.step;
+    point.work = work_of(search, &point.settings);
     return point;
 }
 
@@ -126,8 +134,9 @@ static double value_of(const Search *search, const ck_TunePoint *point) {
     double error = point->trial.error, tolerance = search->options->tolerance;
     if (point->trial.status != CK_RUN_OK || !(error >= 0)) return FAILED;
     if (isnan(tolerance)) return log(fmax(error, 1e-16));
-    // capped, so that whatever runs is better than what does not
-    return log(point->work) + fmin(0.5 * FAILED, PENALTY * fmax(0, log(error / tolerance)));
+    // capped, so that whatever runs is better than what does not; of two that cost the same, the closer one
+    return log(point->work) + 1e-6 * fmin(1, error / tolerance) +
+           fmin(0.5 * FAILED, PENALTY * fmax(0, log(error / tolerance)));
 }
 
 static void add_row(ck_Csv *csv, const ck_Model *model, const ck_TuneOptions *options, const char *role,
@@ -153,42 +162,87 @@ static void add_row(ck_Csv *csv, const ck_Model *model, const ck_TuneOptions *op
     ck_csv_text(csv, bounds);
 }
 
-// NLopt's objective. Settings that round to ones already tried are not run again.
+// The number of a point among those tried, -1 where there is none. Settings already tried are not run again.
+static int try_point(Search *search, ck_TunePoint *point) {
+    char key[256];
+    write_key(key, sizeof key, point);
+    for (int i = 0; i < search->point_count; i++)
+        if (!strcmp(search->keys[i], key)) return i;
+    if (search->status || search->point_count == MOST_POINTS) return -1;
+    search->status = evaluate(search, point, key);
+    if (search->status) return -1;
+    split_errors(point, &search->comparison->truth, search->options->like != NULL);
+    int index = search->point_count++;
+    memcpy(search->keys[index], key, sizeof key);
+    search->points[index] = *point;
+    search->values[index] = value_of(search, point);
+    if (search->values[index] < search->values[search->best]) search->best = index;
+    add_row(search->csv, &search->comparison->model, search->options, "evaluation", point, "");
+    if (search->options->progress)
+        search->options->progress(search->point_count, search->points[search->best].trial.error);
+    return index;
+}
+
+static bool meets(const Search *search, const ck_TunePoint *point) {
+    return point->trial.status == CK_RUN_OK && point->trial.error <= search->options->tolerance;
+}
+
+// NLopt's.
 static double objective(unsigned count, const double *x, double *gradient, void *context) {
     (void)count;
     (void)gradient; // none of the methods asks for it
     Search *search = context;
-    if (search->status || search->point_count == MOST_POINTS) return FAILED;
     ck_TunePoint point = point_at(search, x);
-    char key[256];
-    write_key(key, sizeof key, &point);
-    for (int i = 0; i < search->point_count; i++)
-        if (!strcmp(search->keys[i], key)) return search->values[i];
-    search->status = evaluate(search, &point, key);
-    if (search->status) return FAILED;
-    split_errors(&point, &search->comparison->truth, search->options->like != NULL);
-    int index = search->point_count++;
-    memcpy(search->keys[index], key, sizeof key);
-    search->points[index] = point;
-    search->values[index] = value_of(search, &point);
-    if (search->values[index] < search->values[search->best]) search->best = index;
-    add_row(search->csv, &search->comparison->model, search->options, "evaluation", &point, "");
-    if (search->options->progress)
-        search->options->progress(search->point_count, search->points[search->best].trial.error);
-    return search->values[index];
+    // dearer than one that meets the tolerance: no run could make it better than this
+    if (search->point_count && meets(search, &search->points[search->best]) &&
+        point.work > search->points[search->best].work)
+        return log(point.work);
+    int index = try_point(search, &point);
+    return index < 0 ? FAILED : search->values[index];
+}
+
+// Relaxations to try at each pair of substeps and iterations: that of the best so far, then over their range.
+static const double relaxations[] = {0, 1, 1.2, 1.4, 1.5, 1.6, 1.8};
+
+static bool meets_at(void *context, uint32_t substeps, uint32_t iterations, int variant) {
+    Search *search = context;
+    ck_TunePoint point = search->points[search->best];
+    point.settings.substeps = substeps;
+    if (search->automatic.iterations) point.settings.iterations = iterations;
+    if (variant) point.settings.relaxation = relaxations[variant];
+    point.work = work_of(search, &point.settings);
+    int index = try_point(search, &point);
+    return index >= 0 && meets(search, &search->points[index]);
+}
+
+// Works on whole numbers, which NLopt's methods do not know of.
+static void search_grid(Search *search, ck_Tuning *tuning) {
+    const ck_TunePoint *best = &search->points[search->best];
+    if (!search->point_count || !meets(search, best)) return;
+    ck_TuneGrid grid = {.has_iterations = search->automatic.iterations > 0,
+                        .variant_count =
+                            search->automatic.relaxation > 0 ? sizeof relaxations / sizeof *relaxations : 1,
+                        .work = best->settings.substeps * (1 + fmax(1, best->settings.iterations)),
+                        .iterations = (uint32_t)fmax(1, best->settings.iterations),
+                        .most_tries = REFINING,
+                        .meets = meets_at,
+                        .context = search};
+    ck_tune_grid_refine(&grid);
+    grid.most_tries = grid.tries + EXHAUSTING;
+    tuning->is_cheapest = ck_tune_grid_exhaust(&grid) && !search->status;
 }
 
 static void add_range(Search *search, int variable, double low, double high) {
     search->ranges[search->range_count++] = (Range){variable, low, high};
 }
 
-// A factor of 32 either way in what is counted; what is given in numbers, around what theory would set.
+// From one to 32 times as many of what is counted; what is given in numbers, around what theory would set.
 static void find_ranges(Search *search) {
     const ck_Settings *automatic = &search->automatic;
     const bool *varies = search->options->varies;
     const ck_Model *model = &search->comparison->model;
-    double substeps = log2(automatic->substeps), stiffness = model->spring_count ? model->springs[0].stiffness : 1;
-    add_range(search, CK_SET_SUBSTEPS, fmax(0, substeps - 5), substeps + 5);
+    double stiffness = model->spring_count ? model->springs[0].stiffness : 1;
+    add_range(search, CK_SET_SUBSTEPS, 0, log2(automatic->substeps) + 5);
     if (automatic->iterations) add_range(search, CK_SET_ITERATIONS, 0, fmax(7, log2(automatic->iterations) + 2));
     if (automatic->relaxation > 0) add_range(search, CK_SET_RELAXATION, 0.8, 1.9);
     if (varies[CK_SET_COMPLIANCE]) add_range(search, CK_SET_COMPLIANCE, -log2(stiffness) - 4, -log2(stiffness) + 4);
@@ -233,8 +287,9 @@ static void name_bounds(const Search *search, ck_Tuning *tuning) {
     size_t used = 0;
     place(search, &tuning->best, x);
     for (int i = 0; i < search->range_count; i++) {
-        if (x[i] > 0.001 && x[i] < 0.999) continue;
         int variable = search->ranges[i].variable;
+        bool is_one = x[i] < 0.5 && variable != CK_TUNE_STIFFNESS && ck_setting_keys[variable].is_whole;
+        if ((x[i] > 0.001 && x[i] < 0.999) || is_one) continue; // none is less than one
         used += (size_t)snprintf(tuning->bounds + used, sizeof tuning->bounds - used, "%s%s at its %s bound",
                                  used ? "; " : "",
                                  variable == CK_TUNE_STIFFNESS ? "stiffness" : ck_setting_keys[variable].name,
@@ -307,7 +362,7 @@ static ck_Status conclude(Search *search, ck_Tuning *tuning, ck_Error *error) {
                        search->point_count, options->engine->name);
     tuning->best = search->points[search->best];
     tuning->evaluations = search->point_count;
-    tuning->meets = isnan(options->tolerance) || tuning->best.trial.error <= options->tolerance;
+    tuning->meets = isnan(options->tolerance) || meets(search, &tuning->best);
     name_bounds(search, tuning);
     add_row(search->csv, &search->comparison->model, options, "best", &tuning->best, tuning->bounds);
     ck_Status status = CK_OK;
@@ -336,6 +391,8 @@ ck_Status ck_tune_run(ck_Tuning *tuning, const ck_Comparison *comparison, const 
     }
     if (!status && search->point_count) place(search, &search->points[search->best], x);
     if (!status) status = search_with(search, NLOPT_LN_SBPLX, LOCAL, x);
+    if (!status && !isnan(options->tolerance)) search_grid(search, tuning);
+    if (!status) status = search->status;
     if (!status) status = conclude(search, tuning, error);
     ck_journal_close(&search->journal, !status);
     ck_run_free(&search->like);
@@ -348,6 +405,7 @@ void ck_tune_print(const ck_Tuning *tuning, const ck_TuneOptions *options, const
     printf("# %s on %s: error %.3g, %.4g sweeps per simulated second, %d settings tried\n", options->engine->name,
            model->name, best->trial.error, best->work, tuning->evaluations);
     if (!tuning->meets) printf("# the tolerance of %g is not met\n", options->tolerance);
+    if (tuning->is_cheapest) printf("# every cheaper pair of substeps and iterations was tried, and misses it\n");
     if (*tuning->bounds) printf("# %s\n", tuning->bounds);
     if (best->stiffness != 1) printf("# with stiffness, shear and bend of springs times %.6g\n", best->stiffness);
     printf("settings:\n  %s: {", options->engine->name);

@@ -37,6 +37,7 @@ typedef struct ck_Tuning {
     ck_TunePoint best;
     int evaluations;
     bool meets;       // the tolerance, where there is one
+    bool is_cheapest; // all that would be cheaper was tried, and misses it
     char bounds[200]; // which variables ended at a bound; empty: none
 } ck_Tuning;
 

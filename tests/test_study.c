@@ -184,17 +184,6 @@ static void test_precision(void **state) {
     free(text);
 }
 
-static void test_tune(void **state) {
-    (void)state;
-    char row[1000];
-    finish("tune rope_hanging --engine bullet-pbd --error 0.01 --validate rope_catenary --out %s/tune", 0);
-    find_row(row, sizeof row, "tune/tune.csv", "rope_hanging,bullet-pbd,best");
-    assert_non_null(strstr(row, ",yes,"));
-    find_row(row, sizeof row, "tune/tune.csv", "rope_catenary,bullet-pbd,validation");
-    finish("tune rope_hanging --error 0.01 --out %s/tune", 2);
-    finish("tune rope_hanging --engine bullet-pbd --vary mass --out %s/tune", 2);
-}
-
 // A drag that does nothing is not needed, and it alone.
 static void test_needs(void **state) {
     (void)state;
@@ -220,11 +209,26 @@ static void test_needs(void **state) {
     free(output);
 }
 
+// Half as many springs of a rope leave it as long and as heavy, as soft, and as stiff to bend; a sheet that has no half
+// of its own size is not tried.
+static void test_half(void **state) {
+    (void)state;
+    char row[1000];
+    finish("needs tests/cases/halved_rope.yaml --out %s/half", 0);
+    find_row(row, sizeof row, "half/needs.csv", "halve_rope,native-verlet,every second particle,sag");
+    assert_near("sag, of half", field_of(row, 6) - field_of(row, 5), 0.019, 5e-4);
+    finish("needs tests/cases/no_half.yaml --out %s/half", 0);
+    fixture_assert_output("every second particle    not tried: no coarser grid of square cells has its size");
+    find_row(row, sizeof row, "half/needs.csv", "halve69,native-verlet,every second particle,");
+    assert_non_null(strstr(row, ",refused,"));
+    assert_null(strstr(row, "inf"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),      cmocka_unit_test(test_shards),
-        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),  cmocka_unit_test(test_tune),
-        cmocka_unit_test(test_needs),       cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),  cmocka_unit_test(test_needs),
+        cmocka_unit_test(test_half),        cmocka_unit_test(test_precision),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
