@@ -155,8 +155,7 @@ void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Setting
     ck_scaled_model_ledger(ledger, model);
     ck_ledger_add(ledger,
                   {"time step", model->step, "s", "dt", model->step / used.substeps, "step / substeps", CK_EXACT});
-    ck_ledger_add(ledger,
-                  {"mass", model->mass[0], "kg", "Node::m_im", 1 / model->mass[0], "1/m, 0 where pinned", CK_EXACT});
+    ck_ledger_add_masses(ledger, model, {"mass", 0, "kg", "Node::m_im", 0, "1/m, 0 where pinned", CK_EXACT}, true);
     double gravity = ck_length(model->gravity), force = ck_length(model->force);
     if (model->terms & CK_TERM_GRAVITY)
         ck_ledger_add(ledger, {"gravity", gravity, "m/s2", "m_gravity", gravity, "g", CK_EXACT});

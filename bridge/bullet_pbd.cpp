@@ -355,7 +355,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
              CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
-    .shares_steps = false,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_ITERATIONS) | CK_HAS(CK_SET_KLST) | CK_HAS(CK_SET_REORDERED),
     .order = 1,
     .rest_order = 2,
     .damped_rest_order = 2,

@@ -105,8 +105,11 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     double h = model->step / used->substeps;
     ck_scaled_model_ledger(ledger, model);
     ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "h", h, "step / substeps", CK_EXACT});
-    ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "dMass", model->mass[0],
-                                         "m; kinematic where pinned", CK_EXACT});
+    ck_ledger_add_masses(
+        ledger, model,
+        (ck_LedgerRow){
+            .unit = "kg", .native_parameter = "dMass", .formula = "m; kinematic where pinned", .match = CK_EXACT},
+        false);
     if (model->terms & CK_TERM_GRAVITY)
         ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "dWorldSetGravity",
                                              ck_length(model->gravity), "g", CK_EXACT});
@@ -278,6 +281,7 @@ const ck_Engine ck_ode_quick = {
     .version = version,
     .method = CK_METHOD_SEMI_IMPLICIT_ODE,
     .terms = ODE_TERMS,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_ITERATIONS) | CK_HAS(CK_SET_RELAXATION),
     .order = 1,
     .create = create_quick,
     .step = step,
@@ -294,6 +298,7 @@ const ck_Engine ck_ode_direct = {
     .version = version,
     .method = CK_METHOD_SEMI_IMPLICIT_ODE,
     .terms = ODE_TERMS,
+    .settings = CK_HAS(CK_SET_SUBSTEPS),
     .order = 1,
     .create = create_direct,
     .step = step,

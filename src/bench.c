@@ -250,7 +250,7 @@ static ck_Status add_seconds(ck_Csv *csv, const Body *body, const ck_BenchOption
     for (int i = 0; i < ck_engine_count() && !status; i++) {
         Candidate automatic = {.engine = ck_engine_at(i)->name, .setup = "automatic"};
         Entrant entrant = {.engine = ck_engine_at(i), .candidate = &automatic};
-        if (!strcmp(automatic.engine, "null")) continue;
+        if (!strcmp(automatic.engine, "still")) continue;
         if (options->progress) options->progress(body->name, automatic.engine);
         create(&entrant, &model, &automatic.settings);
         double spent = 0;

@@ -18,7 +18,7 @@ static const ck_Chart charts[] = {
      "better",
      1300, 900, true, ck_chart_select_summary},
     {"cost", "error against cost at automatic settings",
-     "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status,null_error", 760, 470, false, ck_chart_select_cost},
+     "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status,still_error", 760, 470, false, ck_chart_select_cost},
     {"precision", "error against cost over time steps and iterations",
      "engine,cpu_s,error,on_own_front,on_front,uncertainty", 760, 520, false, ck_chart_select_precision},
     {"iterations", "iterations against substeps at equal cost", "engine,iterations,cpu_s,error", 980, 640, false,

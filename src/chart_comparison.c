@@ -11,7 +11,7 @@
 
 // null moves nothing, which is of no interest beside what the others do.
 static bool is_shown(const char *engine) {
-    return strcmp(engine, "null") != 0;
+    return strcmp(engine, "still") != 0;
 }
 
 static double on_axis(double error) {
@@ -48,7 +48,7 @@ int ck_chart_select_summary(const ck_ReportData *data, const char *scene, FILE *
 }
 
 // What moving nothing is off by; NaN: not known.
-static double null_error(const ck_ReportData *data, const char *scene) {
+static double still_error(const ck_ReportData *data, const char *scene) {
     for (int i = 0; i < data->summary_count; i++)
         if (!strcmp(data->summary[i].scene, scene) && !is_shown(data->summary[i].engine)) return data->summary[i].error;
     return NAN;
@@ -60,7 +60,7 @@ int ck_chart_select_cost(const ck_ReportData *data, const char *scene, FILE *out
         const ck_Summary *one = &data->summary[i];
         if (strcmp(one->scene, scene) || !is_shown(one->engine) || !isfinite(one->error) || !(one->cost > 0)) continue;
         fprintf(out, "%s,%.9g,%.9g,%.9g,%d,%s,%s,%.9g\n", one->engine, 1e3 * one->cost, on_axis(one->error),
-                one->uncertainty, one->on_front, one->metric, one->status, null_error(data, scene));
+                one->uncertainty, one->on_front, one->metric, one->status, still_error(data, scene));
         rows++;
     }
     return rows;

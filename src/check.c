@@ -21,6 +21,9 @@ ck_Status ck_baseline_read(ck_Baseline *baseline, const char *directory, ck_Erro
     *baseline = (ck_Baseline){0};
     ck_CsvTable table;
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_BASELINE], error);
+    if (status == CK_IO)
+        status = ck_fail(error, CK_BAD_INPUT, "%s/%s: cannot be read; 'clothcheck check --update' writes it", directory,
+                         ck_layouts[CK_BASELINE].file);
     if (!status && !table.row_count)
         status = ck_fail(error, CK_BAD_INPUT, "%s/%s: holds no rows; 'clothcheck check --update' writes it", directory,
                          ck_layouts[CK_BASELINE].file);

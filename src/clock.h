@@ -11,6 +11,13 @@ static inline double ck_thread_cpu(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+// CPU time of all threads of this process, s.
+static inline double ck_process_cpu(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
 // Time on the wall, s, from an arbitrary start.
 static inline double ck_wall(void) {
     struct timespec time;

@@ -8,25 +8,35 @@
 #define CK_EXIT_FAILED 1 // a check failed
 #define CK_EXIT_USAGE 2  // wrong usage or input
 
-typedef struct ck_Command {
+// What a command takes on its command line.
+typedef enum ck_ArgumentGroup {
+    CK_TAKES_OUT = 1,
+    CK_TAKES_RUNS = 2, // --engine, --set, --threads and the limits
+    CK_TAKES_TIMING = 4,
+    CK_TAKES_JOBS = 8,
+    CK_TAKES_SHARD = 16,
+    CK_TAKES_GOAL = 32,
+    CK_TAKES_ERROR = 64,
+    CK_TAKES_UPDATE = 128,
+    CK_TAKES_KEEPING = 256, // --append, --force
+    CK_TAKES_BENCH = 512
+} ck_ArgumentGroup;
+
+typedef struct ck_Command ck_Command;
+struct ck_Command {
     const char *name, *arguments, *about;
-    int (*run)(int argc, char **argv); // argv[0] is the command's name
-} ck_Command;
+    const char *help; // what it does, in some lines
+    unsigned groups;  // of options
+    double seconds;   // of wall time that a run may take, where --time-limit does not say
+    // argv[0] is the command's name. Returns the exit status.
+    int (*run)(const ck_Command *command, int argc, char **argv);
+};
 
-int ck_command_list(int argc, char **argv);
-int ck_command_run(int argc, char **argv);
-int ck_command_compare(int argc, char **argv);
-int ck_command_claims(int argc, char **argv);
-int ck_command_bench(int argc, char **argv);
-int ck_command_precision(int argc, char **argv);
-int ck_command_stability(int argc, char **argv);
-int ck_command_tune(int argc, char **argv);
-int ck_command_needs(int argc, char **argv);
-int ck_command_check(int argc, char **argv);
-int ck_command_merge(int argc, char **argv);
-int ck_command_report(int argc, char **argv);
+extern const ck_Command ck_command_list, ck_command_run, ck_command_compare, ck_command_check, ck_command_precision,
+    ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge, ck_command_report, ck_command_claims,
+    ck_command_bench;
 
-// What run and compare have in common on their command lines.
+// What stands on a command line.
 typedef struct ck_Arguments {
     ck_CompareOptions options;
     const ck_Engine *engines[CK_SCENE_MAX_ENGINES];
@@ -34,8 +44,10 @@ typedef struct ck_Arguments {
     const char *out; // directory; NULL: none
     int jobs;        // worker processes of a study; 0: as many as suit it
     int shard, shards;
-    bool has_time_limit, runs_nothing;
-    char question[2048];               // what is asked, without where to and how fast; words between tabs
+    bool runs_nothing;
+    bool appends, forces;              // into a directory that holds other results: keeps them, replaces them
+    int rounds, largest;               // of bench
+    char question[2048];               // what is asked, without the scene, where to and how fast; words between tabs
     double error;                      // a tolerance; NAN: none
     const ck_Engine *like;             // NULL: none
     bool varies[CK_SETTING_COUNT + 1]; // of --vary; the last is stiffness
@@ -46,25 +58,15 @@ typedef struct ck_Arguments {
     int scene_count;
 } ck_Arguments;
 
-// What a command takes beside --out, --engine, --set, the limits and --threads.
-typedef enum ck_ArgumentGroup {
-    CK_TAKES_TIMING = 1,
-    CK_TAKES_JOBS = 2,
-    CK_TAKES_SHARD = 32,
-    CK_TAKES_GOAL = 4,
-    CK_TAKES_ERROR = 8,
-    CK_TAKES_UPDATE = 16
-} ck_ArgumentGroup;
-
 // Reads options and scene arguments; a scene is a path, or a bare name that stands for scenes/NAME.yaml.
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY. Free with ck_arguments_free in any case.
-ck_Status ck_arguments_read(ck_Arguments *arguments, int argc, char **argv, unsigned groups, ck_Error *error);
+ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv, ck_Error *error);
 // All of scenes/ where none was given. Errors: CK_BAD_INPUT, CK_NO_MEMORY.
 ck_Status ck_arguments_all_scenes(ck_Arguments *arguments, ck_Error *error);
 void ck_arguments_free(ck_Arguments *arguments);
 
 // Prints what the options are, for --help.
-void ck_arguments_help(unsigned groups);
+void ck_arguments_help(const ck_Command *command);
 
 // Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each while
 // its runs are in memory. Returns the exit status, having told of an error on stderr.

@@ -186,20 +186,11 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
     return status;
 }
 
-int ck_command_check(int argc, char **argv) {
-    for (int i = 1; i < argc; i++)
-        if (!strcmp(argv[i], "--help")) {
-            printf("clothcheck check [SCENE...] [options]\n\nMeasures what " BASELINE_DIRECTORY "/" BASELINE_NAME
-                   " holds again and prints what is beyond its band, the worst first;\nwrites check.xml (JUnit). Exit "
-                   "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size "
-                   "change at most: what rounding may come to on another machine.\n\n");
-            ck_arguments_help(CK_TAKES_JOBS | CK_TAKES_UPDATE);
-            return CK_EXIT_OK;
-        }
+static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     Work work = {0};
     int deviations = 0;
-    ck_Status status = ck_arguments_read(&work.arguments, argc, argv, CK_TAKES_JOBS | CK_TAKES_UPDATE, &error);
+    ck_Status status = ck_arguments_read(&work.arguments, command, argc, argv, &error);
     if (!status) status = check(&work, &deviations, &error);
     for (int i = 0; i < work.comparison_count; i++) ck_comparison_free(&work.comparisons[i]);
     free(work.comparisons);
@@ -210,3 +201,16 @@ int ck_command_check(int argc, char **argv) {
     if (status) return ck_command_fail(status, &error);
     return deviations ? CK_EXIT_FAILED : CK_EXIT_OK;
 }
+
+const ck_Command ck_command_check = {
+    .name = "check",
+    .arguments = "[SCENE...]",
+    .about = "regression: what was measured before, within bands; exit status 1",
+    .help = "Measures what " BASELINE_DIRECTORY "/" BASELINE_NAME
+            " holds again and prints what is beyond its band, the worst first;\nwrites check.xml (JUnit). Exit "
+            "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size change at "
+            "most: what rounding may come to on another machine.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_UPDATE,
+    .seconds = 900,
+    .run = run,
+};

@@ -1,5 +1,6 @@
 #include "claims.h"
 #include "command.h"
+#include "machine.h"
 #include "path.h"
 
 #include <stdio.h>
@@ -8,13 +9,6 @@
 
 static void show_progress(const char *claim, double value) {
     fprintf(stderr, "\r\033[K%s: %g", claim, value);
-}
-
-static void print_help(void) {
-    printf("clothcheck claims [--out DIR]\n\nTests what was claimed of the two origins: writes claims.csv, sweeps over "
-           "what each claim leaves open, and\nquirks.csv, what each of their quirks costs, into DIR (default out). "
-           "Takes some minutes.\n\n"
-           "  --out DIR   write the CSVs into DIR\n  --help      this text\n");
 }
 
 static ck_Status write_tables(const char *out, ck_Error *error) {
@@ -33,23 +27,24 @@ static ck_Status write_tables(const char *out, ck_Error *error) {
     return status;
 }
 
-int ck_command_claims(int argc, char **argv) {
-    const char *out = "out";
-    for (int i = 1; i < argc; i++) {
-        if (!strcmp(argv[i], "--help")) {
-            print_help();
-            return CK_EXIT_OK;
-        }
-        if (strcmp(argv[i], "--out") || i + 1 == argc) {
-            ck_Error error = {0};
-            return ck_command_fail(
-                ck_fail(&error, CK_BAD_INPUT, "%s: claims takes --out DIR and nothing else", argv[i]), &error);
-        }
-        out = argv[++i];
-    }
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Arguments arguments;
     ck_Error error = {0};
-    ck_Status status = write_tables(out, &error);
-    if (status) return ck_command_fail(status, &error);
-    printf("CSVs: %s\n", out);
-    return CK_EXIT_OK;
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    const char *out = arguments.out ? arguments.out : "out";
+    if (!status) status = write_tables(out, &error);
+    if (!status) status = ck_machine_save(out, &error);
+    if (!status) printf("CSVs: %s\n", out);
+    ck_arguments_free(&arguments);
+    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
 }
+
+const ck_Command ck_command_claims = {
+    .name = "claims",
+    .arguments = "",
+    .about = "what was claimed of the two origins, and what their quirks cost",
+    .help = "Tests what was claimed of the two origins: writes claims.csv, sweeps over what each claim leaves open, "
+            "and\nquirks.csv, what each of their quirks costs, into --out (default out). Takes some minutes.",
+    .groups = CK_TAKES_OUT,
+    .run = run,
+};

@@ -24,23 +24,10 @@ static void show(const ck_Comparison *comparison) {
     fflush(stdout);
 }
 
-static void print_help(void) {
-    printf(
-        "clothcheck compare [SCENE...] [options]\n\nRuns all engines on all scenes (without SCENE: scenes/*.yaml) and "
-        "writes\n"
-        "runs.csv, metrics.csv, deviations.csv, ledger.csv, series.csv and machine.csv into --out (default out).\n\n");
-    ck_arguments_help(CK_TAKES_TIMING);
-}
-
-int ck_command_compare(int argc, char **argv) {
-    for (int i = 1; i < argc; i++)
-        if (!strcmp(argv[i], "--help")) {
-            print_help();
-            return CK_EXIT_OK;
-        }
+static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     ck_Arguments arguments;
-    ck_Status status = ck_arguments_read(&arguments, argc, argv, CK_TAKES_TIMING, &error);
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status) status = ck_arguments_all_scenes(&arguments, &error);
     if (!arguments.out) arguments.out = "out";
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
@@ -51,3 +38,15 @@ int ck_command_compare(int argc, char **argv) {
     ck_arguments_free(&arguments);
     return result;
 }
+
+const ck_Command ck_command_compare = {
+    .name = "compare",
+    .arguments = "[SCENE...]",
+    .about = "all engines on all scenes: the six CSVs of a comparison",
+    .help = "Runs all engines on all scenes (without SCENE: scenes/*.yaml) and writes runs.csv, metrics.csv, "
+            "deviations.csv,\nledger.csv, series.csv and machine.csv into --out (default out). Results there that this "
+            "comparison would not\nreplace stop it: --append keeps those of other scenes, --force replaces all.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_KEEPING,
+    .seconds = 900,
+    .run = run,
+};

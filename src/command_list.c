@@ -28,12 +28,12 @@ static void list_quirks(const char *engine, const char *const *names, int count)
     for (int i = 0; i < count; i++) printf("  %-16d %s\n", 1 << i, names[i]);
 }
 
-int ck_command_list(int argc, char **argv) {
-    if (argc > 1 && !strcmp(argv[1], "--help")) {
-        printf("clothcheck list\n\nTells the engines, metrics, truths and the scenes in scenes/.\n");
-        return CK_EXIT_OK;
-    }
-    if (argc > 1) return ck_command_fail(CK_BAD_INPUT, &(ck_Error){"list takes no arguments"});
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Arguments arguments;
+    ck_Error error = {0};
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    ck_arguments_free(&arguments);
+    if (status) return ck_command_fail(status, &error);
     printf("Engines:\n");
     for (int i = 0; i < ck_engine_count(); i++)
         printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
@@ -48,3 +48,11 @@ int ck_command_list(int argc, char **argv) {
     list_scenes();
     return CK_EXIT_OK;
 }
+
+const ck_Command ck_command_list = {
+    .name = "list",
+    .arguments = "",
+    .about = "engines, scenes, metrics and truths",
+    .help = "Tells the engines, metrics, truths and the scenes in scenes/.",
+    .run = run,
+};

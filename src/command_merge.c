@@ -1,4 +1,6 @@
 #include "command.h"
+#include "file.h"
+#include "hash.h"
 #include "study.h"
 
 #include <limits.h>
@@ -8,35 +10,57 @@
 
 #define MAX_WORDS 128
 
-static const struct Mergeable {
-    const char *name;
-    int (*run)(int argc, char **argv);
-} studies[] = {{"precision", ck_command_precision}, {"stability", ck_command_stability}, {"needs", ck_command_needs}};
+static const ck_Command *const studies[] = {&ck_command_precision, &ck_command_stability, &ck_command_needs};
 #define STUDIES (sizeof studies / sizeof *studies)
 
 // Runs the parts' own command: all its cases are there, so that it only writes what one run would have written.
-static int run_question(const struct Mergeable *study, char *question, const char *out) {
-    char *words[MAX_WORDS + 4];
+static int run_question(const ck_Command *study, char *question, const char *scene, const char *out) {
+    char *words[MAX_WORDS + 5];
     int count = 0;
-    char *end = strstr(question, "\t(scene ");
-    if (end) *end = 0;
+    *strstr(question, "\t(scene ") = 0;
     for (char *word = strtok(question, "\t"); word && count < MAX_WORDS; word = strtok(NULL, "\t"))
         words[count++] = word;
+    words[count++] = (char *)scene;
     words[count++] = "--kept";
     words[count++] = "--out";
     words[count++] = (char *)out;
     words[count] = NULL;
-    return study->run(count, words);
+    return study->run(study, count, words);
 }
 
 // The study whose journal a directory holds; NULL where there is none.
-static const struct Mergeable *find_study(const char *directory, char *question, size_t size) {
+static const ck_Command *find_study(const char *directory, char *question, size_t size) {
     char name[64];
     for (size_t i = 0; i < STUDIES; i++) {
-        snprintf(name, sizeof name, "%s.journal", studies[i].name);
-        if (!ck_journal_question(directory, name, question, size, NULL)) return &studies[i];
+        snprintf(name, sizeof name, "%s.journal", studies[i]->name);
+        if (!ck_journal_question(directory, name, question, size, NULL)) return studies[i];
     }
     return NULL;
+}
+
+// Where the scene is that the question was asked of: as its hash says, whatever the file is called. False: not there.
+static bool is_scene(const char *question) {
+    unsigned long long wanted;
+    const char *hash = strstr(question, "\t(scene "), *place = strstr(question, CK_JOURNAL_PLACE);
+    char *text = NULL;
+    size_t size;
+    if (!hash || !place || sscanf(hash, "\t(scene %16llx", &wanted) != 1) return false;
+    ck_Status status = ck_file_read(&text, &size, place + strlen(CK_JOURNAL_PLACE), NULL);
+    bool is_same = !status && ck_hash(CK_HASH_START, text, size) == wanted;
+    free(text);
+    return is_same;
+}
+
+// The first of the parts whose scene file can be read here and is what it was; its question says where.
+static ck_Status find_scene(const ck_Command *study, char *const *parts, int count, char *question, size_t size,
+                            ck_Error *error) {
+    char name[64];
+    snprintf(name, sizeof name, "%s.journal", study->name);
+    for (int i = 0; i < count; i++)
+        if (!ck_journal_question(parts[i], name, question, size, NULL) && is_scene(question)) return CK_OK;
+    const char *place = strstr(question, CK_JOURNAL_PLACE);
+    return ck_fail(error, CK_BAD_INPUT, "%s: is not there, or not as it was when %s was asked of it",
+                   place ? place + strlen(CK_JOURNAL_PLACE) : "the scene", study->name);
 }
 
 static bool is_among(const char *directory, char *const *parts, int count) {
@@ -46,24 +70,30 @@ static bool is_among(const char *directory, char *const *parts, int count) {
     return false;
 }
 
-int ck_command_merge(int argc, char **argv) {
-    bool asks_help = argc > 1 && !strcmp(argv[1], "--help");
-    if (argc < 3 || asks_help) {
-        fprintf(asks_help ? stdout : stderr,
-                "clothcheck merge OUT DIR...\n\nJoins the parts of a study that were run with --shard into DIR..., and "
-                "writes into OUT what one run would have\nwritten.\n");
-        return asks_help ? CK_EXIT_OK : CK_EXIT_USAGE;
-    }
+static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     char question[4096];
-    if (is_among(argv[1], argv + 2, argc - 2)) {
-        ck_Status same =
-            ck_fail(&error, CK_BAD_INPUT, "%s: is a part, too; OUT must be a directory of its own", argv[1]);
-        return ck_command_fail(same, &error);
-    }
-    const struct Mergeable *study = find_study(argv[2], question, sizeof question);
+    if (argc < 3)
+        ck_fail(&error, CK_BAD_INPUT, "%s takes OUT and the DIRs of the parts; %d are given", command->name, argc - 1);
+    else if (is_among(argv[1], argv + 2, argc - 2))
+        ck_fail(&error, CK_BAD_INPUT, "%s: is a part, too; OUT must be a directory of its own", argv[1]);
+    if (*error.message) return ck_command_fail(CK_BAD_INPUT, &error);
+    const ck_Command *study = find_study(argv[2], question, sizeof question);
     ck_Status status =
         study ? CK_OK : ck_fail(&error, CK_BAD_INPUT, "%s: holds no part of a study (NAME.journal)", argv[2]);
     if (!status) status = ck_study_merge(argv[1], study->name, (const char *const *)argv + 2, argc - 2, &error);
-    return status ? ck_command_fail(status, &error) : run_question(study, question, argv[1]);
+    if (!status) status = find_scene(study, argv + 2, argc - 2, question, sizeof question, &error);
+    if (status) return ck_command_fail(status, &error);
+    char *place = strstr(question, CK_JOURNAL_PLACE);
+    return run_question(study, question, place + strlen(CK_JOURNAL_PLACE), argv[1]);
 }
+
+const ck_Command ck_command_merge = {
+    .name = "merge",
+    .arguments = "OUT DIR...",
+    .about = "joins the parts of a study that was run with --shard",
+    .help = "Joins the parts of a study that were run with --shard into DIR..., and writes into OUT what one run would "
+            "have\nwritten. Parts are of one study when they were asked the same of the same scene text, wherever its "
+            "file was.",
+    .run = run,
+};

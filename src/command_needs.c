@@ -34,11 +34,18 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     return status;
 }
 
-int ck_command_needs(int argc, char **argv) {
-    return ck_study_command(argc, argv,
-                            "clothcheck needs SCENE [options]\n\nLeaves out one modelled term at a time, and every "
-                            "second particle, and says which of them change any metric by\nmore than --error (default "
-                            "0.01), and what each costs; writes needs.csv. The engine is the first that models all\n"
-                            "there is, or --engine.",
-                            CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR, 60, run);
+static int run_command(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, argc, argv, run);
 }
+
+const ck_Command ck_command_needs = {
+    .name = "needs",
+    .arguments = "SCENE",
+    .about = "what the scene needs to be modelled, and what not: needs.csv",
+    .help = "Leaves out one modelled term at a time, and every second particle, and says which of them change any "
+            "metric by\nmore than --error (default 0.01), and what each costs; writes needs.csv. The engine is the "
+            "first that models all\nthere is, or --engine.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR,
+    .seconds = 60,
+    .run = run_command,
+};

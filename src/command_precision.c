@@ -24,12 +24,18 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     return status;
 }
 
-int ck_command_precision(int argc, char **argv) {
-    return ck_study_command(argc, argv,
-                            "clothcheck precision SCENE [options]\n\nRuns every engine over time steps from an eighth "
-                            "to sixteen times as many substeps as its rule takes, and over\niterations; writes "
-                            "precision.csv with error, cost and the Pareto front, and precision_summary.csv with "
-                            "orders,\nfloors and the cost to reach 10, 1 and 0.1 %. A run may take 20 s where "
-                            "--time-limit does not say otherwise.",
-                            CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD, 20, run);
+static int run_command(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, argc, argv, run);
 }
+
+const ck_Command ck_command_precision = {
+    .name = "precision",
+    .arguments = "SCENE",
+    .about = "error against cost over time steps and iterations: precision.csv",
+    .help = "Runs every engine over time steps from an eighth to sixteen times as many substeps as its rule takes, and "
+            "over\niterations; writes precision.csv with error, cost and the Pareto front, and precision_summary.csv "
+            "with orders,\nfloors and the cost to reach 10, 1 and 0.1 %.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .seconds = 20,
+    .run = run_command,
+};

@@ -18,22 +18,26 @@ static void show(const ck_Comparison *comparison) {
     }
 }
 
-int ck_command_run(int argc, char **argv) {
-    for (int i = 1; i < argc; i++)
-        if (!strcmp(argv[i], "--help")) {
-            printf("clothcheck run SCENE [options]\n\nRuns one scene and prints a summary and what each engine made of "
-                   "the scene.\n\n");
-            ck_arguments_help(CK_TAKES_TIMING);
-            return CK_EXIT_OK;
-        }
+static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     ck_Arguments arguments;
-    ck_Status status = ck_arguments_read(&arguments, argc, argv, CK_TAKES_TIMING, &error);
-    if (!status) status = ck_arguments_all_scenes(&arguments, &error);
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status && arguments.scene_count != 1)
-        status =
-            ck_fail(&error, CK_BAD_INPUT, "run takes one SCENE, not %d; compare takes several", arguments.scene_count);
+        status = ck_fail(&error, CK_BAD_INPUT,
+                         arguments.scene_count ? "run takes one SCENE; %d are given; compare takes several"
+                                               : "run takes one SCENE; none is given; 'clothcheck list' tells them",
+                         arguments.scene_count);
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
     ck_arguments_free(&arguments);
     return result;
 }
+
+const ck_Command ck_command_run = {
+    .name = "run",
+    .arguments = "SCENE",
+    .about = "one scene, chosen engines: summary and ledger; CSVs with --out",
+    .help = "Runs one scene and prints a summary and what each engine made of the scene.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_KEEPING,
+    .seconds = 900,
+    .run = run,
+};

@@ -20,11 +20,17 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     return status;
 }
 
-int ck_command_stability(int argc, char **argv) {
-    return ck_study_command(argc, argv,
-                            "clothcheck stability SCENE [options]\n\nPushes the scene's rest and steps it: a map over "
-                            "time steps, stiffnesses and iterations, and the critical step by\nbisection to 1 % beside "
-                            "what theory says; writes stability.csv. A run may take 10 s\n"
-                            "where --time-limit does not say otherwise.",
-                            CK_TAKES_JOBS | CK_TAKES_SHARD, 10, run);
+static int run_command(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, argc, argv, run);
 }
+
+const ck_Command ck_command_stability = {
+    .name = "stability",
+    .arguments = "SCENE",
+    .about = "where methods fail: time step against stiffness: stability.csv",
+    .help = "Pushes the scene's rest and steps it: a map over time steps, stiffnesses and iterations, and the critical "
+            "step by\nbisection to 1 % beside what theory says; writes stability.csv.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .seconds = 10,
+    .run = run_command,
+};

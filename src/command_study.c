@@ -69,7 +69,9 @@ int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Compar
     for (; count < arguments->scene_count && !status; count++)
         status = ck_comparison_load(&comparisons[count], arguments->scenes[count], &error);
     if (!status) status = check_names(comparisons, count, &error);
-    if (!status && arguments->out) status = ck_tables_open(&tables, arguments->out, &error);
+    ck_Keeping keeping = arguments->forces ? CK_KEEP_NONE : arguments->appends ? CK_KEEP_OTHERS : CK_KEEP_OR_FAIL;
+    if (!status && arguments->out)
+        status = ck_tables_open(&tables, arguments->out, keeping, comparisons, count, &arguments->options, &error);
     if (!status) status = run_all(comparisons, arguments, &tables, show, &error);
     if (!status && arguments->out) status = ck_tables_close(&tables, &error);
     ck_tables_discard(&tables);

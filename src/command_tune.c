@@ -44,13 +44,19 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     return status;
 }
 
-int ck_command_tune(int argc, char **argv) {
-    return ck_study_command(
-        argc, argv,
-        "clothcheck tune SCENE --engine NAME [options]\n\nSearches substeps, iterations and relaxation for the "
-        "cheapest "
-        "settings within --error, or without it for those that\ncome closest to the truth, or to --like ENGINE; prints "
-        "them as lines of a scene file, and writes every evaluation to\ntune.csv. Work is sweeps over all springs, one "
-        "more for each substep. A run may take 60 s.",
-        CK_TAKES_GOAL, 60, run);
+static int run_command(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, argc, argv, run);
 }
+
+const ck_Command ck_command_tune = {
+    .name = "tune",
+    .arguments = "SCENE",
+    .about = "the cheapest settings within an error, or the closest to a goal: tune.csv",
+    .help = "Searches substeps, iterations and relaxation for the cheapest settings within --error, or without it for "
+            "those that\ncome closest to the truth, or to --like ENGINE; prints them as lines of a scene file, and "
+            "writes every evaluation to\ntune.csv. Needs one --engine. Work is sweeps over all springs, one more for "
+            "each substep.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_GOAL,
+    .seconds = 60,
+    .run = run_command,
+};

@@ -1,5 +1,6 @@
 #include "comparison.h"
 
+#include "names.h"
 #include "random.h"
 #include "verdict.h"
 
@@ -23,16 +24,20 @@ ck_CompareOptions ck_compare_options_default(void) {
     };
 }
 
+static const char *metric_name(const void *table, int index) {
+    (void)table;
+    return index < ck_metric_count() ? ck_metric_at(index)->name : NULL;
+}
+
 static ck_Status check_measure(const ck_Comparison *comparison, ck_Error *error) {
     for (int i = 0; i < comparison->model.measure_count; i++) {
         if (ck_metric_find(comparison->model.measure[i])) continue;
-        char path[32], known[300] = "";
+        char path[32], known[400], hint[80];
+        const char *name = comparison->model.measure[i];
         snprintf(path, sizeof path, "measure[%d]", i);
-        for (int metric = 0, used = 0; metric < ck_metric_count(); metric++)
-            used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", metric ? ", " : "",
-                             ck_metric_at(metric)->name);
-        return ck_scene_fail(&comparison->scene, path, error, "there is no metric %s; known are %s",
-                             comparison->model.measure[i], known);
+        return ck_scene_fail(&comparison->scene, path, error, "there is no metric %s%s; known are %s", name,
+                             ck_name_hint(hint, sizeof hint, name, metric_name, NULL),
+                             ck_name_list(known, sizeof known, metric_name, NULL));
     }
     return CK_OK;
 }

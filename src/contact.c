@@ -75,7 +75,8 @@ static void squeeze(const Hold *hold, double *vector) {
     for (int i = 0; i < hold->count; i++) enters |= ck_dot(vector, hold->normals[i]) < -1e-12 * ck_length(vector);
     if (!enters) return;
     const double *a = hold->normals[0], *b = hold->normals[1];
-    double edge[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    double edge[3];
+    ck_cross(edge, a, b);
     double along = hold->count == 2 ? ck_dot(vector, edge) : 0, squared = ck_dot(edge, edge);
     memset(vector, 0, 3 * sizeof(double));
     if (squared > 1e-12) ck_add_scaled(vector, along / squared, edge);

@@ -8,8 +8,9 @@
 
 // Adding an engine is one file, one line here and one in engine_list.h.
 static const ck_Engine *const engines[] = {
-    &ck_native_verlet, &ck_native_bars,     &ck_native_xpbd,     &ck_native_rope, &ck_seed_tecido, &ck_seed_cloth,
-    &ck_bullet_pbd,    &ck_bullet_implicit, &ck_bullet_explicit, &ck_ode_quick,   &ck_ode_direct,  &ck_null_engine,
+    &ck_native_verlet, &ck_native_narrow, &ck_native_bars, &ck_native_xpbd,     &ck_native_rope,
+    &ck_seed_tecido,   &ck_seed_cloth,    &ck_bullet_pbd,  &ck_bullet_implicit, &ck_bullet_explicit,
+    &ck_ode_quick,     &ck_ode_direct,    &ck_still,
 };
 
 ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame) {
@@ -41,6 +42,11 @@ const ck_Engine *ck_engine_find(const char *name) {
     for (int i = 0; i < ck_engine_count(); i++)
         if (!strcmp(engines[i]->name, name)) return engines[i];
     return NULL;
+}
+
+const char *ck_engine_name(const void *table, int index) {
+    (void)table;
+    return index < ck_engine_count() ? engines[index]->name : NULL;
 }
 
 ck_Settings ck_engine_settings(const ck_Engine *engine, const ck_Model *model) {

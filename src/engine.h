@@ -36,7 +36,7 @@ typedef struct ck_Engine {
     const char *(*version)(void);
     ck_Method method;
     unsigned terms;        // ck_Term bits it can model
-    bool shares_steps;     // among threads, with the same result
+    unsigned settings;     // CK_HAS bits of those it has
     int order;             // order of convergence of its elastic motion; 0: it models no elasticity
     int rest_order;        // of its rest; 0: it is exact at any step, or models no elasticity
     int damped_rest_order; // of its rest where springs are damped
@@ -72,6 +72,9 @@ const ck_Engine *ck_engine_at(int index);
 
 // NULL where there is no such engine.
 const ck_Engine *ck_engine_find(const char *name);
+
+// Names by their number, as ck_name_hint reads them; NULL beyond the last.
+const char *ck_engine_name(const void *table, int index);
 
 // The settings that a model holds for an engine: zeros for one that is not in the table.
 ck_Settings ck_engine_settings(const ck_Engine *engine, const ck_Model *model);

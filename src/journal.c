@@ -43,10 +43,20 @@ static void take_field(void *text, size_t length, void *context) {
         reader->row.values[field - 3] = length ? strtod(number, NULL) : NAN;
 }
 
+static size_t counting_length(const char *question) {
+    const char *place = strstr(question, CK_JOURNAL_PLACE);
+    return place ? (size_t)(place - question) : strlen(question);
+}
+
+bool ck_journal_is_same(const char *question, const char *other) {
+    size_t length = counting_length(question);
+    return length == counting_length(other) && !memcmp(question, other, length);
+}
+
 static void end_row(int end, void *context) {
     (void)end;
     Reader *reader = context;
-    bool is_whole = reader->field == 3 + CK_JOURNAL_VALUES, is_asked = !strcmp(reader->question, reader->wanted);
+    bool is_whole = reader->field == 3 + CK_JOURNAL_VALUES, is_asked = ck_journal_is_same(reader->question, reader->wanted);
     reader->row.is_done = true;
     if (reader->row_index > 0 && is_whole && is_asked && reader->kept)
         reader->kept(reader->context, reader->key, &reader->row);
@@ -135,7 +145,7 @@ ck_Status ck_journal_read(const ck_Journal *journal, const char *question,
         *reader = (Reader){.wanted = question, .kept = kept, .context = context};
         status = parse(reader, text, length, error);
     }
-    if (!status && strcmp(reader->question, question))
+    if (!status && !ck_journal_is_same(reader->question, question))
         status = ck_fail(error, CK_BAD_INPUT,
                          "%s: holds an unfinished study that was asked otherwise (other options, scene or program); "
                          "finish that one, remove the file or give another --out",

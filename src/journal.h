@@ -12,6 +12,9 @@
 
 #define CK_JOURNAL_VALUES 72
 
+// Parts a question from where it was asked, which does not count: the same may be asked on another machine.
+#define CK_JOURNAL_PLACE "\tat\t"
+
 // What is kept of a case. What values mean is the study's business; NaN where there is none.
 typedef struct ck_JournalRow {
     bool is_done;
@@ -40,6 +43,9 @@ ck_Status ck_journal_read(const ck_Journal *journal, const char *question,
 
 // Appends a case; several processes may, at the same time. Errors: CK_IO, CK_NO_MEMORY.
 ck_Status ck_journal_add(const ck_Journal *journal, const char *key, const ck_JournalRow *row, ck_Error *error);
+
+// True where two questions are the same but for their places.
+bool ck_journal_is_same(const char *question, const char *other);
 
 // Reads the question of directory/name into text. Errors: CK_BAD_INPUT where there is none, CK_NO_MEMORY.
 ck_Status ck_journal_question(const char *directory, const char *name, char *text, size_t size, ck_Error *error);

@@ -31,3 +31,22 @@ void ck_ledger_add_colliders(ck_Ledger *ledger, const ck_Model *model, ck_Ledger
         ck_ledger_add(ledger, friction);
     }
 }
+
+static bool has_mass_before(const ck_Model *model, int index) {
+    for (int i = 0; i < index; i++)
+        if (model->mass[i] == model->mass[index]) return true;
+    return false;
+}
+
+void ck_ledger_add_masses(ck_Ledger *ledger, const ck_Model *model, ck_LedgerRow mass, bool takes_inverse) {
+    const int last = model->particle_count - 1;
+    for (int i = 0, kinds = 0; i <= last && kinds < CK_LEDGER_MASSES; i++) {
+        if (i && model->mass[i] == model->mass[i - 1]) continue; // most are, and a large cloth has many
+        if (has_mass_before(model, i)) continue;
+        kinds++;
+        mass.quantity = i ? i == last && model->body == CK_ROPE ? "mass of the last" : "mass of others" : "mass";
+        mass.wanted = model->mass[i];
+        mass.native_value = takes_inverse ? 1 / model->mass[i] : model->mass[i];
+        ck_ledger_add(ledger, mass);
+    }
+}

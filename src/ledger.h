@@ -2,6 +2,8 @@
 #ifndef CK_LEDGER_H
 #define CK_LEDGER_H
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -20,9 +22,10 @@ typedef struct ck_LedgerRow {
     ck_Match match;
 } ck_LedgerRow;
 
-// Room for every quantity of a scene, for the quirks of an origin and for so many different colliders.
+// Room for every quantity of a scene, for the quirks of an origin and for so many different colliders and masses.
 #define CK_LEDGER_CAPACITY 48
 #define CK_LEDGER_COLLIDERS 8
+#define CK_LEDGER_MASSES 4
 
 typedef struct ck_Ledger {
     ck_LedgerRow rows[CK_LEDGER_CAPACITY];
@@ -38,6 +41,10 @@ void ck_ledger_add(ck_Ledger *ledger, ck_LedgerRow row);
 struct ck_Model;
 void ck_ledger_add_colliders(ck_Ledger *ledger, const struct ck_Model *model, ck_LedgerRow restitution,
                              ck_LedgerRow friction);
+
+// Adds a row for every mass that differs from those before, of the first CK_LEDGER_MASSES such. takes_inverse: the
+// engine keeps 1/m.
+void ck_ledger_add_masses(ck_Ledger *ledger, const struct ck_Model *model, ck_LedgerRow mass, bool takes_inverse);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "names.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -6,30 +7,54 @@
 #include <string.h>
 #include <unistd.h>
 
-static const ck_Command commands[] = {
-    {"list", "", "engines, scenes, metrics and truths", ck_command_list},
-    {"run", "SCENE", "one scene, chosen engines: summary and ledger; CSVs with --out", ck_command_run},
-    {"compare", "[SCENE...]", "all engines on all scenes: the six CSVs of a comparison", ck_command_compare},
-    {"check", "[SCENE...]", "regression: what was measured before, within bands; exit status 1", ck_command_check},
-    {"precision", "SCENE", "error against cost over time steps and iterations: precision.csv", ck_command_precision},
-    {"stability", "SCENE", "where methods fail: time step against stiffness: stability.csv", ck_command_stability},
-    {"tune", "SCENE", "the cheapest settings within an error, or the closest to a goal: tune.csv", ck_command_tune},
-    {"needs", "SCENE", "what the scene needs to be modelled, and what not: needs.csv", ck_command_needs},
-    {"merge", "OUT DIR...", "joins the parts of a study that was run with --shard", ck_command_merge},
-    {"report", "DIR", "charts and one page of the CSVs in DIR", ck_command_report},
-    {"claims", "", "what was claimed of the two origins, and what their quirks cost", ck_command_claims},
-    {"bench", "", "how fast the engines are: per spring, per step, and as a cloth grows", ck_command_bench},
+// Adding a command is one file, one line here and one in command.h.
+static const ck_Command *const commands[] = {
+    &ck_command_list,      &ck_command_run,       &ck_command_compare, &ck_command_check,
+    &ck_command_precision, &ck_command_stability, &ck_command_tune,    &ck_command_needs,
+    &ck_command_merge,     &ck_command_report,    &ck_command_claims,  &ck_command_bench,
 };
-#define COMMANDS (sizeof commands / sizeof *commands)
+#define COMMANDS ((int)(sizeof commands / sizeof *commands))
+
+static const char *command_name(const void *table, int index) {
+    (void)table;
+    return index < COMMANDS ? commands[index]->name : NULL;
+}
+
+static const ck_Command *find_command(const char *name) {
+    for (int i = 0; i < COMMANDS; i++)
+        if (!strcmp(name, commands[i]->name)) return commands[i];
+    return NULL;
+}
+
+static int fail_unknown(const char *name) {
+    char known[200], hint[80];
+    fprintf(stderr, "clothcheck: there is no command %s%s; known are %s\n", name,
+            ck_name_hint(hint, sizeof hint, name, command_name, NULL),
+            ck_name_list(known, sizeof known, command_name, NULL));
+    return CK_EXIT_USAGE;
+}
 
 static void print_help(FILE *out) {
     fprintf(out,
             "clothcheck %s: which cloth solver, at which settings, is right for my scene, and what does it cost?\n\n",
             CK_VERSION);
-    for (size_t i = 0; i < COMMANDS; i++)
-        fprintf(out, "  clothcheck %-9s %-11s %s\n", commands[i].name, commands[i].arguments, commands[i].about);
+    for (int i = 0; i < COMMANDS; i++)
+        fprintf(out, "  clothcheck %-9s %-11s %s\n", commands[i]->name, commands[i]->arguments, commands[i]->about);
     fprintf(out, "\n'clothcheck COMMAND --help' tells a command's options. Exit status: 0 fine, 1 a check failed, 2 "
                  "wrong usage or input.\n");
+}
+
+static int print_command_help(const ck_Command *command) {
+    printf("clothcheck %s%s%s%s\n\n%s\n\n", command->name, *command->arguments ? " " : "", command->arguments,
+           command->groups ? " [options]" : "", command->help);
+    ck_arguments_help(command);
+    return CK_EXIT_OK;
+}
+
+static bool asks_help(int argc, char **argv) {
+    for (int i = 1; i < argc; i++)
+        if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) return true;
+    return false;
 }
 
 // A closed standard stream would lend its number to the first file that is written.
@@ -41,19 +66,24 @@ static void open_streams(void) {
 }
 
 static int run(int argc, char **argv) {
-    if (argc > 1 && !strcmp(argv[1], "--version")) {
+    const char *name = argc > 1 ? argv[1] : "";
+    bool is_help = !strcmp(name, "help");
+    if (!strcmp(name, "--version")) {
         printf("clothcheck %s\n", CK_VERSION);
         return CK_EXIT_OK;
     }
-    if (argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"))) {
+    if (!strcmp(name, "--help") || !strcmp(name, "-h") || (is_help && argc == 2)) {
         print_help(stdout);
         return CK_EXIT_OK;
     }
-    for (size_t i = 0; argc > 1 && i < COMMANDS; i++)
-        if (!strcmp(argv[1], commands[i].name)) return commands[i].run(argc - 1, argv + 1);
-    if (argc > 1) fprintf(stderr, "clothcheck: there is no command %s\n\n", argv[1]);
-    print_help(stderr);
-    return CK_EXIT_USAGE;
+    if (!*name) {
+        print_help(stderr);
+        return CK_EXIT_USAGE;
+    }
+    const ck_Command *command = find_command(argv[1 + is_help]);
+    if (!command) return fail_unknown(argv[1 + is_help]);
+    if (is_help || asks_help(argc - 1, argv + 1)) return print_command_help(command);
+    return command->run(command, argc - 1, argv + 1);
 }
 
 int main(int argc, char **argv) {

@@ -37,13 +37,19 @@ static ck_Status copy_labels(ck_Model *model, const ck_SceneFile *file) {
     return status;
 }
 
+// Whether the step is a whole number of frames a second, in as many digits as people write.
+static bool is_near_fps(const ck_SceneTime *time) {
+    double fps = 1 / time->step;
+    return fabs(fps - round(fps)) < 1e-4 * fps && fmod(time->duration * round(fps), 1) == 0;
+}
+
 static ck_Status set_time(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneTime *time = &scene->file->time;
     double ratio = time->duration / time->step, frames = floor(ratio + 0.5);
     if (frames < 1 || frames > 1e6 || fabs(ratio - frames) > 1e-6 * frames)
         return ck_scene_fail(scene, "time", error,
-                             "duration / step is %g frames; it must be a whole number from 1 to 1000000",
-                             time->duration / time->step);
+                             "duration / step is %.9g frames; it must be a whole number from 1 to 1000000%s", ratio,
+                             is_near_fps(time) ? "; fps in place of step says 1/60 s and its like exactly" : "");
     model->duration = time->duration;
     model->step = time->step;
     model->frame_count = (int)frames;
@@ -147,6 +153,33 @@ static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error 
     return status;
 }
 
+// What is said of springs is modelled by some, or it is an error: nothing is left out in silence.
+static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneSprings *springs = scene->file->springs;
+    if (!springs) return CK_OK;
+    const struct {
+        const char *path;
+        double value;
+        bool is_idle;
+        const char *why;
+    } rules[] = {
+        {"springs.stiffness", springs->stiffness, springs->rigid, "bars that are rigid have none; keep one of the two"},
+        {"springs.damping", springs->damping, springs->rigid, "rigid bars do not stretch, so that it damps nothing"},
+        {"springs.stiffness", springs->stiffness, !ck_model_spring_of_kind(model, CK_STRUCTURAL), "there is no spring"},
+        {"springs.shear", springs->shear, !ck_model_spring_of_kind(model, CK_SHEAR),
+         "only a cloth of two rows and columns has diagonals; add bars to a network"},
+        {"springs.bend", springs->bend, !ck_model_spring_of_kind(model, CK_BEND),
+         "only three particles in a row of a cloth or rope bend; add bars to a network"},
+        {"springs.damping", springs->damping, !model->spring_count, "there is no spring"},
+        {"springs.prestretch", springs->prestretch, !model->spring_count, "there is no spring"},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
+        if (rules[i].value > 0 && rules[i].is_idle)
+            return ck_scene_fail(scene, rules[i].path, error, "%s has nothing to act on: %s; leave it out",
+                                 rules[i].path, rules[i].why);
+    return CK_OK;
+}
+
 // A pin that stays may be inside a collider; what is free there, or let go, would be thrown out.
 static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     for (int i = 0; i < model->collider_count; i++) {
@@ -206,6 +239,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     ck_Status status = copy_labels(model, scene->file);
     if (!status) status = set_time(model, scene, error);
     if (!status) status = ck_model_build_body(model, scene, error);
+    if (!status) status = check_springs(model, scene, error);
     if (!status) status = set_pins(model, scene, error);
     if (!status) status = set_releases(model, scene, error);
     if (!status) status = set_colliders(model, scene, error);

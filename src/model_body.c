@@ -178,21 +178,45 @@ static ck_Status build_network(ck_Model *model, const ck_Scene *scene, ck_Error 
     return build_bars(model, scene, error);
 }
 
-// The unit vector along which noise moves particles: across the cloth or the rope; along z for a network.
-static void out_of_plane(double *normal, const ck_Model *model, const ck_SceneFile *file) {
-    double across[3] = {1, 0, 0}, down[3] = {0, -1, 0};
-    if (file->cloth && file->cloth->across) memcpy(across, file->cloth->across, sizeof across);
-    if (file->cloth && file->cloth->down) memcpy(down, file->cloth->down, sizeof down);
-    if (file->rope && model->particle_count > 1) {
-        ck_subtract(across, model->position + 3, model->position);
-        int least = fabs(across[0]) <= fabs(across[1]) ? 0 : 1;
-        if (fabs(across[2]) < fabs(across[least])) least = 2;
-        memset(down, 0, sizeof down);
-        down[least] = 1;
+// Some direction at right angles to a line, [3].
+static void across_line(double *out, const double *line) {
+    int least = fabs(line[0]) <= fabs(line[1]) ? 0 : 1;
+    if (fabs(line[2]) < fabs(line[least])) least = 2;
+    double axis[3] = {least == 0, least == 1, least == 2};
+    ck_cross(out, line, axis);
+}
+
+// Out of the plane of three nodes that are far apart: that of all, where they have one. Towards growing z, or y, or x.
+static void out_of_network(double *normal, const ck_Model *model) {
+    double line[3] = {0, 0, 0}, to[3], cross[3], farthest = 0;
+    for (int i = 1; i < model->particle_count; i++) {
+        ck_subtract(to, model->position + 3 * i, model->position);
+        if (ck_length(to) > ck_length(line)) memcpy(line, to, sizeof line);
     }
-    normal[0] = across[1] * down[2] - across[2] * down[1];
-    normal[1] = across[2] * down[0] - across[0] * down[2];
-    normal[2] = across[0] * down[1] - across[1] * down[0];
+    if (!(ck_length(line) > 0)) line[0] = 1;
+    across_line(normal, line);
+    for (int i = 1; i < model->particle_count; i++) {
+        ck_subtract(to, model->position + 3 * i, model->position);
+        ck_cross(cross, line, to);
+        if (ck_length(cross) <= fmax(farthest, 1e-9 * ck_dot(line, line))) continue;
+        farthest = ck_length(cross);
+        memcpy(normal, cross, sizeof cross);
+    }
+    int axis = fabs(normal[2]) > 1e-9 * ck_length(normal) ? 2 : fabs(normal[1]) > 1e-9 * ck_length(normal) ? 1 : 0;
+    for (int i = 0; i < 3 && normal[axis] < 0; i++) to[i] = -normal[i];
+    if (normal[axis] < 0) memcpy(normal, to, sizeof to);
+}
+
+// The unit vector along which noise moves particles: out of the plane of the body, or across its line.
+static void out_of_plane(double *normal, const ck_Model *model, const ck_SceneFile *file) {
+    const double *across = across_default, *down = down_default;
+    if (file->cloth) {
+        ck_cross(normal, or_default(file->cloth->across, across), or_default(file->cloth->down, down));
+    } else if (file->rope) {
+        across_line(normal, or_default(file->rope->along, down));
+    } else {
+        out_of_network(normal, model);
+    }
     double length = ck_length(normal);
     for (int axis = 0; axis < 3; axis++) normal[axis] /= length;
 }

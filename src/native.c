@@ -133,8 +133,11 @@ void ck_native_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Setting
                       ck_Match drag_match) {
     double dt = model->step / used->substeps;
     ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "dt", dt, "step / substeps", CK_EXACT});
-    ck_ledger_add(ledger, (ck_LedgerRow){"mass", model->mass[0], "kg", "inverse_mass", 1 / model->mass[0],
-                                         "1/m, 0 where pinned", CK_EXACT});
+    ck_ledger_add_masses(
+        ledger, model,
+        (ck_LedgerRow){
+            .unit = "kg", .native_parameter = "inverse_mass", .formula = "1/m, 0 where pinned", .match = CK_EXACT},
+        true);
     if (model->terms & CK_TERM_GRAVITY)
         ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "acceleration",
                                              ck_length(model->gravity), "g", CK_EXACT});

@@ -92,7 +92,8 @@ const ck_Engine ck_native_bars = {
     .version = ck_native_version,
     .method = CK_METHOD_STOERMER_BARS,
     .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
-    .shares_steps = true,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_ITERATIONS) | CK_HAS(CK_SET_RELAXATION) |
+                CK_HAS(CK_SET_THREADS) | CK_HAS(CK_SET_VECTORS),
     .order = 0,
     .create = create,
     .step = step,

@@ -110,6 +110,7 @@ const ck_Engine ck_native_rope = {
     .version = ck_native_version,
     .method = CK_METHOD_STOERMER_DIRECT,
     .terms = (CK_NATIVE_TERMS | CK_TERM_RIGID) & ~(unsigned)(CK_TERM_PLANE | CK_TERM_SPHERE),
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_ITERATIONS),
     .order = 0,
     .create = create,
     .step = step,

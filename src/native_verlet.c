@@ -174,9 +174,38 @@ const ck_Engine ck_native_verlet = {
     .version = ck_native_version,
     .method = CK_METHOD_VELOCITY_VERLET,
     .terms = CK_NATIVE_TERMS,
-    .shares_steps = true,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_THREADS) | CK_HAS(CK_SET_VECTORS),
     .order = 2,
     .create = create,
+    .step = step,
+    .read = read_state,
+    .release = release,
+    .contact = read_contact,
+    .destroy = destroy,
+};
+
+// As narrow as the packages of the peers are built: two doubles an instruction. It says how much of a lead is width.
+static ck_Status create_narrow(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                               ck_Ledger *ledger, ck_Error *error) {
+    ck_RowSprings springs;
+    if (model->collider_count || !ck_rows_fit(model, &springs))
+        return ck_fail(error, CK_REFUSED,
+                       "is native-verlet: only regular cloths without colliders are stepped in vectors");
+    ck_Settings narrow = *wanted;
+    narrow.vectors = 2;
+    return create(state, model, &narrow, used, ledger, error);
+}
+
+const ck_Engine ck_native_narrow = {
+    .name = "native-narrow",
+    .about = "native-verlet with two doubles an instruction, as the packages of its peers are built",
+    .family = "native",
+    .version = ck_native_version,
+    .method = CK_METHOD_VELOCITY_VERLET,
+    .terms = CK_NATIVE_TERMS,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_THREADS),
+    .order = 2,
+    .create = create_narrow,
     .step = step,
     .read = read_state,
     .release = release,

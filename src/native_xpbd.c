@@ -161,7 +161,8 @@ const ck_Engine ck_native_xpbd = {
     .version = ck_native_version,
     .method = CK_METHOD_XPBD,
     .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
-    .shares_steps = true,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_ITERATIONS) | CK_HAS(CK_SET_RELAXATION) |
+                CK_HAS(CK_SET_COMPLIANCE) | CK_HAS(CK_SET_THREADS) | CK_HAS(CK_SET_VECTORS),
     .order = 1,
     .rest_order = 2,
     .damped_rest_order = 1, // γ̃ sees gravity's push, too

@@ -60,9 +60,9 @@ static void measure(void *context) {
     ck_engine_read(engine, state, &job->run->trajectory, 0);
     report->frame_count = 1;
     while (report->frame_count <= job->frames) {
-        double start = ck_thread_cpu();
+        double start = ck_process_cpu();
         report->step = ck_engine_advance(engine, state, job->run->model, report->frame_count - 1);
-        report->cpu += ck_thread_cpu() - start;
+        report->cpu += ck_process_cpu() - start;
         if (report->step) break;
         ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
         if (is_hopeless(job)) break;
@@ -83,9 +83,9 @@ static void time_frames(void *context) {
     state = create(job);
     if (report->status) return;
     for (int i = 0; i < job->frames; i++) {
-        double start = ck_thread_cpu();
+        double start = ck_process_cpu();
         report->step = ck_engine_advance(engine, state, job->run->model, i);
-        double cpu = ck_thread_cpu() - start;
+        double cpu = ck_process_cpu() - start;
         report->cpu += cpu;
         report->worst_step = fmax(report->worst_step, cpu);
         if (report->step) break;

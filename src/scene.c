@@ -19,6 +19,8 @@ ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
                                          (cyaml_data_t **)&scene->file, NULL);
     if (result == CYAML_ERR_OOM) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
     if (result) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, cyaml_strerror(result));
+    ck_SceneTime *time = &scene->file->time;
+    if (time->fps > 0) time->step = 1 / time->fps;
     return CK_OK;
 }
 

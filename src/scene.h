@@ -74,6 +74,7 @@ typedef struct ck_SceneRelease {
 
 typedef struct ck_SceneTime {
     double duration, step; // s
+    double fps;            // frames a second, in place of step; 0: step is given
 } ck_SceneTime;
 
 // The part of a scene that the file's schema fills.

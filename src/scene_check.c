@@ -1,5 +1,6 @@
 #include "scene_check.h"
 
+#include "names.h"
 #include "scene_schema.h"
 
 #include <errno.h>
@@ -30,11 +31,13 @@ static const char *kind_of(const yaml_node_t *node) {
     }
 }
 
-// writes "a, b, c" of a schema's keys
-static void list_keys(char *out, size_t size, const cyaml_schema_field_t *fields) {
-    out[0] = 0;
-    for (size_t used = 0; fields->key && used < size; fields++)
-        used += (size_t)snprintf(out + used, size - used, "%s%s", used ? ", " : "", fields->key);
+static const char *key_at(const void *fields, int index) {
+    return ((const cyaml_schema_field_t *)fields)[index].key;
+}
+
+static const char *list_keys(char *out, size_t size, const cyaml_schema_field_t *fields) {
+    ck_name_list(out, size, key_at, fields);
+    return *out ? out : "none";
 }
 
 static const cyaml_schema_field_t *find_field(const cyaml_schema_field_t *fields, const char *key) {
@@ -116,10 +119,11 @@ static ck_Status check_key(const Check *check, yaml_node_t *mapping, yaml_node_p
     const char *name = scalar_text(key);
     const cyaml_schema_field_t *field = name ? find_field(fields, name) : NULL;
     if (!field) {
-        char known[400];
-        list_keys(known, sizeof known, fields);
-        return ck_document_fail(check->document, key, check->error, "unknown key %s%s%s; known here: %s", kind_of(key),
-                                *path ? " in " : "", path, known);
+        char known[400], hint[80];
+        return ck_document_fail(check->document, key, check->error, "unknown key %s%s%s%s; known here: %s",
+                                kind_of(key), *path ? " in " : "", path,
+                                ck_name_hint(hint, sizeof hint, name ? name : "", key_at, fields),
+                                list_keys(known, sizeof known, fields));
     }
     for (yaml_node_pair_t *earlier = mapping->data.mapping.pairs.start; earlier < pair; earlier++)
         if (!strcmp(scalar_text(yaml_document_get_node(check->yaml, earlier->key)), name))
@@ -132,11 +136,11 @@ static ck_Status check_key(const Check *check, yaml_node_t *mapping, yaml_node_p
 static ck_Status check_mapping(const Check *check, yaml_node_t *node, const cyaml_schema_field_t *fields,
                                const char *path) {
     char known[400];
-    list_keys(known, sizeof known, fields);
     const char *what = *path ? path : "the scene";
     if (node->type != YAML_MAPPING_NODE)
         return ck_document_fail(check->document, node, check->error,
-                                "%s is %s; it must be a mapping with keys among %s", what, kind_of(node), known);
+                                "%s is %s; it must be a mapping with keys among %s", what, kind_of(node),
+                                list_keys(known, sizeof known, fields));
     for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
         ck_Status status = check_key(check, node, pair, fields, path);
         if (status) return status;
@@ -214,6 +218,10 @@ ck_Status ck_scene_check(const ck_Document *document, const cyaml_schema_value_t
     static const char *const bodies[] = {"cloth", "rope", "network", NULL};
     if (!status) status = check_one_of(&check, root, bodies, "the scene", "cloth, rope and network; it needs one body");
 
+    static const char *const clocks[] = {"step", "fps", NULL};
+    if (!status)
+        status = check_one_of(&check, ck_document_find(document, "time"), clocks, "time",
+                              "step and fps; it needs one of the two");
     static const char *const shapes[] = {"plane", "sphere", NULL};
     yaml_node_t *colliders = ck_document_find(document, "colliders");
     if (status || colliders->type != YAML_SEQUENCE_NODE) return status;

@@ -31,6 +31,7 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"release[].at", CK_RANGE_NOT_NEGATIVE},
     {"time.duration", CK_RANGE_POSITIVE},
     {"time.step", CK_RANGE_POSITIVE},
+    {"time.fps", CK_RANGE_POSITIVE},
     {"*.substeps", CK_RANGE_SETTING},
     {"*.iterations", CK_RANGE_SETTING},
     {"*.relaxation", CK_RANGE_SETTING},
@@ -134,11 +135,13 @@ static const cyaml_schema_value_t release = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFA
 
 static const cyaml_schema_field_t time_fields[] = {
     CYAML_FIELD_FLOAT("duration", REQUIRED, ck_SceneTime, duration),
-    CYAML_FIELD_FLOAT("step", REQUIRED, ck_SceneTime, step),
+    CYAML_FIELD_FLOAT("step", OPTIONAL, ck_SceneTime, step),
+    CYAML_FIELD_FLOAT("fps", OPTIONAL, ck_SceneTime, fps),
     CYAML_FIELD_END,
 };
 
-static const cyaml_schema_field_t engine_fields[] = {
+// In the order of ck_Setting.
+static const cyaml_schema_field_t setting_fields[] = {
     CYAML_FIELD_UINT("substeps", OPTIONAL, ck_Settings, substeps),
     CYAML_FIELD_UINT("iterations", OPTIONAL, ck_Settings, iterations),
     CYAML_FIELD_FLOAT("relaxation", OPTIONAL, ck_Settings, relaxation),
@@ -148,11 +151,12 @@ static const cyaml_schema_field_t engine_fields[] = {
     CYAML_FIELD_UINT("reordered", OPTIONAL, ck_Settings, reordered),
     CYAML_FIELD_UINT("threads", OPTIONAL, ck_Settings, threads),
     CYAML_FIELD_UINT("vectors", OPTIONAL, ck_Settings, vectors),
-    CYAML_FIELD_END,
 };
+_Static_assert(sizeof setting_fields / sizeof *setting_fields == CK_SETTING_COUNT, "one a setting");
 
-// completed by ck_scene_schema: a key per engine
+// completed by ck_scene_schema: a key per engine, and in it a key per setting that the engine has
 static cyaml_schema_field_t settings_fields[CK_SCENE_MAX_ENGINES + 1];
+static cyaml_schema_field_t engine_fields[CK_SCENE_MAX_ENGINES][CK_SETTING_COUNT + 1];
 
 typedef struct AllSettings {
     ck_Settings engines[CK_SCENE_MAX_ENGINES];
@@ -184,11 +188,14 @@ static const cyaml_schema_field_t scene_fields[] = {
 static const cyaml_schema_value_t scene_schema = {CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, ck_SceneFile, scene_fields)};
 
 const cyaml_schema_value_t *ck_scene_schema(void) {
-    int count = ck_engine_count();
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < ck_engine_count(); i++) {
+        int count = 0;
+        for (int key = 0; key < CK_SETTING_COUNT; key++)
+            if (ck_engine_at(i)->settings & CK_HAS(key)) engine_fields[i][count++] = setting_fields[key];
         settings_fields[i] =
             (cyaml_schema_field_t){.key = ck_engine_at(i)->name,
                                    .data_offset = (uint32_t)(i * (int)sizeof(ck_Settings)),
-                                   .value = {CYAML_VALUE_MAPPING(OPTIONAL, ck_Settings, engine_fields)}};
+                                   .value = {CYAML_VALUE_MAPPING(OPTIONAL, ck_Settings, engine_fields[i])}};
+    }
     return &scene_schema;
 }

@@ -179,6 +179,7 @@ const ck_Engine ck_seed_cloth = {
     .method = CK_METHOD_SEED,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
              CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_MENDED),
     .order = 1,
     .create = create,
     .step = step,

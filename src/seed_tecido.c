@@ -238,6 +238,7 @@ const ck_Engine ck_seed_tecido = {
     .version = ck_native_version,
     .method = CK_METHOD_SEED,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_VELOCITY | CK_TERM_RELEASE,
+    .settings = CK_HAS(CK_SET_SUBSTEPS) | CK_HAS(CK_SET_ITERATIONS) | CK_HAS(CK_SET_MENDED),
     .order = 0,
     .create = create,
     .step = step,

@@ -12,7 +12,7 @@ extern "C" {
 typedef struct ck_Settings {
     uint32_t substeps;   // steps of the engine per frame (time.step of the scene)
     uint32_t iterations; // solver iterations per substep, where the method has them
-    double relaxation;   // over-relaxation of an iterative solver, usually 1 … 1.5
+    double relaxation;   // over-relaxation of an iterative solver, 1 … 1.5 helps
     double compliance;   // m/N of every spring, in place of 1/k; native-xpbd
     double klst;         // Bullet's linear stiffness of every link, at most 1, in place of the static map; bullet-pbd
     uint32_t mended;     // quirks of an origin to leave out, bits as `clothcheck list` counts them
@@ -40,6 +40,9 @@ typedef enum ck_Setting {
     CK_SET_VECTORS,
     CK_SETTING_COUNT
 } ck_Setting;
+
+// The bit of a setting among those that an engine has.
+#define CK_HAS(setting) (1u << (setting))
 
 extern const ck_SettingKey ck_setting_keys[CK_SETTING_COUNT];
 

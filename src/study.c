@@ -187,7 +187,7 @@ ck_Status ck_study_merge(const char *directory, const char *study, const char *c
     ck_Status status = ck_journal_question(parts[0], name, question, sizeof question, error);
     for (int i = 1; i < part_count && !status; i++) {
         status = ck_journal_question(parts[i], name, other, sizeof other, error);
-        if (!status && strcmp(other, question))
+        if (!status && !ck_journal_is_same(other, question))
             status = ck_fail(error, CK_BAD_INPUT, "%s and %s are not parts of one study: they were asked '%s' and '%s'",
                              parts[0], parts[i], question, other);
     }

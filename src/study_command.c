@@ -1,6 +1,7 @@
 #include "study_command.h"
 
 #include "hash.h"
+#include "machine.h"
 #include "path.h"
 
 #include <stdio.h>
@@ -11,9 +12,9 @@
 // What was asked, the scene's text and the program: what tells a journal's cases apart from anything else.
 static void write_question(ck_StudyCommand *command) {
     const ck_Document *document = &command->comparison->scene.document;
-    snprintf(command->question, sizeof command->question, "%s\t(scene %016llx, clothcheck %s)",
+    snprintf(command->question, sizeof command->question, "%s\t(scene %016llx, clothcheck %s)" CK_JOURNAL_PLACE "%s",
              command->arguments->question, (unsigned long long)ck_hash(CK_HASH_START, document->text, document->length),
-             CK_VERSION);
+             CK_VERSION, command->comparison->path);
 }
 
 static ck_Status find_truth(ck_Comparison *comparison, const ck_Arguments *arguments, ck_Error *error) {
@@ -24,20 +25,13 @@ static ck_Status find_truth(ck_Comparison *comparison, const ck_Arguments *argum
     return status;
 }
 
-int ck_study_command(int argc, char **argv, const char *help, unsigned groups, double seconds,
+int ck_study_command(const ck_Command *command, int argc, char **argv,
                      ck_Status (*run)(const ck_StudyCommand *command, ck_Error *error)) {
-    for (int i = 1; i < argc; i++)
-        if (!strcmp(argv[i], "--help")) {
-            printf("%s\n\n", help);
-            ck_arguments_help(groups);
-            return CK_EXIT_OK;
-        }
     ck_Error error = {0};
     ck_Arguments arguments;
     ck_Comparison comparison = {0};
-    ck_Status status = ck_arguments_read(&arguments, argc, argv, groups, &error);
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!arguments.out) arguments.out = "out";
-    if (!arguments.has_time_limit) arguments.options.limits.seconds = seconds;
     if (!status && arguments.scene_count != 1)
         status = ck_fail(&error, CK_BAD_INPUT, "%s takes one SCENE; %d are given", argv[0], arguments.scene_count);
     if (!status) status = ck_comparison_load(&comparison, arguments.scenes[0], &error);
@@ -46,10 +40,11 @@ int ck_study_command(int argc, char **argv, const char *help, unsigned groups, d
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", arguments.out, strerror(failed));
     if (!status) status = find_truth(&comparison, &arguments, &error);
     if (!status) {
-        ck_StudyCommand command = {.arguments = &arguments, .comparison = &comparison};
-        write_question(&command);
-        status = run(&command, &error);
+        ck_StudyCommand study = {.arguments = &arguments, .comparison = &comparison};
+        write_question(&study);
+        status = run(&study, &error);
     }
+    if (!status) status = ck_machine_save(arguments.out, &error);
     ck_comparison_free(&comparison);
     ck_arguments_free(&arguments);
     return status ? ck_command_fail(status, &error) : CK_EXIT_OK;

@@ -11,9 +11,9 @@ typedef struct ck_StudyCommand {
     char question[2400];
 } ck_StudyCommand;
 
-// Reads arguments of one scene, finds its truth, and calls run. Returns the exit status, having told of an error.
-//   seconds  of wall time that one run may take, where the user says nothing
-int ck_study_command(int argc, char **argv, const char *help, unsigned groups, double seconds,
+// Reads arguments of one scene, finds its truth, calls run, and writes machine.csv. Returns the exit status, having
+// told of an error.
+int ck_study_command(const ck_Command *command, int argc, char **argv,
                      ck_Status (*run)(const ck_StudyCommand *command, ck_Error *error));
 
 // Runs a study's cases; *rows [case_count] is the caller's to free.

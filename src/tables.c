@@ -1,5 +1,6 @@
 #include "tables.h"
 
+#include "kept.h"
 #include "machine.h"
 #include "metric.h"
 #include "path.h"
@@ -8,13 +9,19 @@
 #include <stdio.h>
 #include <string.h>
 
-ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *error) {
+ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, const ck_Comparison *comparisons,
+                         int count, const ck_CompareOptions *options, ck_Error *error) {
     *tables = (ck_Tables){0};
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-    ck_Status status = CK_OK;
-    for (int i = 0; i < CK_COMPARISON_LAYOUTS && !status; i++)
+    const ck_Kept kept = {directory, comparisons, count};
+    ck_Status status =
+        keeping == CK_KEEP_NONE ? CK_OK : ck_kept_check(&kept, keeping == CK_KEEP_OTHERS, options, error);
+    for (int i = 0; i < CK_COMPARISON_LAYOUTS && !status; i++) {
         status = ck_csv_open(&tables->csv[i], directory, &ck_layouts[i], error);
+        if (!status && keeping == CK_KEEP_OTHERS && i != CK_MACHINE)
+            status = ck_kept_copy(&kept, &tables->csv[i], &ck_layouts[i], error);
+    }
     return status;
 }
 

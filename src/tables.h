@@ -9,9 +9,19 @@ typedef struct ck_Tables {
     ck_Csv csv[CK_COMPARISON_LAYOUTS];
 } ck_Tables;
 
-// Starts all six in a directory, which is made where it is missing.
-// Errors: CK_IO, CK_NO_MEMORY. End with ck_tables_close or ck_tables_discard in any case.
-ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Error *error);
+// What becomes of results that a directory holds already.
+typedef enum ck_Keeping {
+    CK_KEEP_OR_FAIL, // an error where any would be lost
+    CK_KEEP_OTHERS,  // those of other scenes stay
+    CK_KEEP_NONE,
+} ck_Keeping;
+
+// Starts all six in a directory, which is made where it is missing. The comparisons are those that will be added, each
+// of the engines of options.
+// Errors: CK_BAD_INPUT where results would be lost, CK_IO, CK_NO_MEMORY. End with ck_tables_close or ck_tables_discard
+// in any case.
+ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, const ck_Comparison *comparisons,
+                         int count, const ck_CompareOptions *options, ck_Error *error);
 
 // Adds the rows of one finished comparison. options are those it ran with.
 void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options);

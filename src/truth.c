@@ -1,6 +1,7 @@
 #include "truth.h"
 
 #include "child.h"
+#include "names.h"
 #include "reference.h"
 #include "truth_cache.h"
 #include "truth_capstan.h"
@@ -73,11 +74,16 @@ const ck_TruthForm *ck_truth_form_find(const char *name) {
     return NULL;
 }
 
+static const char *form_name(const void *table, int index) {
+    (void)table;
+    return index < ck_truth_count() ? forms[index].name : NULL;
+}
+
 static ck_Status fail_unknown(const ck_Model *model, ck_Error *error) {
-    char known[300] = "";
-    for (int i = 0; i < ck_truth_count(); i++)
-        snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", forms[i].name);
-    return ck_fail(error, CK_BAD_INPUT, "%s: there is no truth %s; known are %s", model->name, model->truth, known);
+    char known[400], hint[80];
+    return ck_fail(error, CK_BAD_INPUT, "%s: there is no truth %s%s; known are %s", model->name, model->truth,
+                   ck_name_hint(hint, sizeof hint, model->truth, form_name, NULL),
+                   ck_name_list(known, sizeof known, form_name, NULL));
 }
 
 ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {

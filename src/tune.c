@@ -337,10 +337,10 @@ static ck_Status prepare(Search *search, ck_Error *error) {
     if (!options->like && (!reference->trajectory.frame_count || reference->is_invariant))
         return ck_fail(error, CK_BAD_INPUT, "%s: its truth has no positions to come close to; give --like ENGINE",
                        search->comparison->path);
-    if ((options->varies[CK_SET_COMPLIANCE] && options->engine->method != CK_METHOD_XPBD) ||
-        (options->varies[CK_SET_KLST] && options->engine->method != CK_METHOD_BULLET_PBD))
-        return ck_fail(error, CK_BAD_INPUT, "--vary: compliance is native-xpbd's, klst bullet-pbd's; %s has neither",
-                       options->engine->name);
+    for (int key = 0; key < CK_SETTING_COUNT; key++)
+        if (options->varies[key] && !(options->engine->settings & CK_HAS(key)))
+            return ck_fail(error, CK_BAD_INPUT, "--vary %s: %s has none", ck_setting_keys[key].name,
+                           options->engine->name);
     if (model->terms & ~options->engine->terms)
         return ck_fail(error, CK_REFUSED, "%s does not model all that %s has", options->engine->name, model->name);
     ck_Status status = options->engine->create(&state, model, &options->given, &search->automatic, NULL, error);

@@ -28,6 +28,13 @@ static inline void ck_tangential(double *out, const double *a, const double *n) 
     for (int axis = 0; axis < 3; axis++) out[axis] = a[axis] - along * n[axis];
 }
 
+// out = a × b; out is neither of them
+static inline void ck_cross(double *out, const double *a, const double *b) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 static inline double ck_distance(const double *a, const double *b) {
     double difference[3];
     ck_subtract(difference, a, b);

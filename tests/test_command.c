@@ -19,32 +19,49 @@ static void test_usage(void **state) {
         {"--version", 0, "clothcheck 0."},
         {"bench --help", 0, "bench.csv"},
         {"bench --rounds 0", 2, "must be a whole number from 1 to 99"},
-        {"bench --fast", 2, "bench takes --out DIR"},
+        {"bench --fast", 2, "--fast: no such option; 'clothcheck bench --help' tells"},
         {"claims --help", 0, "claims.csv"},
-        {"claims rope", 2, "claims takes --out DIR"},
-        {"run rope_hanging --set seed-tecido.shine=1", 2, "the key must be one of substeps, "},
-        {"run rope_hanging --threads 0", 2, "a number from 1 to 64"},
-        {"run rope_hanging --set seed-tecido.mended=0.5", 2, "mended must be a whole number"},
-        {"fly", 2, "there is no command fly"},
+        {"claims rope", 2, "rope: claims takes no SCENE"},
+        {"run rope_hanging --set seed-tecido.shine=1", 2,
+         "seed-tecido has no shine; it has substeps, iterations, mended"},
+        {"run rope_hanging --threads 0", 2, "--threads 0: it must be a whole number from 1 to 64"},
+        {"run rope_hanging --threads 1.5", 2, "--threads 1.5: it must be a whole number from 1 to 64"},
+        {"run rope_hanging --set seed-tecido.mended=0.5", 2, "seed-tecido.mended = 0.5: it must be a whole number"},
+        {"fly", 2, "there is no command fly; known are list"},
+        {"tun", 2, "there is no command tun; did you mean tune?"},
+        {"help", 0, "clothcheck compare"},
+        {"help tune", 0, "clothcheck tune SCENE [options]"},
+        {"help fly", 2, "there is no command fly"},
+        {"run -h", 0, "--engine NAME"},
+        {"precision --help", 0, "one run may take (default 20)"},
+        {"run", 2, "run takes one SCENE; none is given"},
         {"run --help", 0, "--engine NAME"},
         {"compare --help", 0, "--time-limit S"},
         {"list", 0, "native-verlet"},
-        {"list all", 2, "list takes no arguments"},
-        {"run rope_hanging free_fall", 2, "run takes one SCENE, not 2"},
+        {"list all", 2, "all: list takes no SCENE"},
+        {"run rope_hanging free_fall", 2, "run takes one SCENE; 2 are given"},
         {"run rope_hanging --engine havok", 2, "there is no engine havok; known are native-verlet"},
+        {"run rope_hanging --engine bulet-pbd", 2, "there is no engine bulet-pbd; did you mean bullet-pbd?"},
         {"run rope_hanging --fast", 2, "--fast: no such option"},
+        {"run rope_hanging --engines still", 2, "--engines: no such option; did you mean --engine?"},
         {"run rope_hanging --out", 2, "needs a value"},
-        {"run rope_hanging --repeats many", 2, "must be a number from 0 to 99"},
+        {"run rope_hanging --repeats many", 2, "must be a whole number from 0 to 99"},
+        {"compare rope_hanging --repeats 3.7", 2, "--repeats 3.7: it must be a whole number"},
         {"run rope_hanging --set ode-quick.substeps", 2, "must read ENGINE.KEY=NUMBER"},
-        {"run rope_hanging --set ode-quick.substeps=1.5", 2, "substeps must be a whole number"},
-        {"run rope_hanging --set ode-quick.color=3", 2, "the key must be one of substeps"},
-        {"run nowhere", 2, "scenes/nowhere.yaml: No such file"},
-        {"run oscillator --engine null --repeats 0", 0, "moves nothing"},
+        {"run rope_hanging --set ode-quick.substeps=1.5", 2, "ode-quick.substeps = 1.5: it must be a whole number"},
+        {"run rope_hanging --set ode-quick.color=3", 2,
+         "ode-quick has no color; it has substeps, iterations, relaxation"},
+        {"run rope_hanging --set bullet-pbd.relaxation=1.2", 2, "bullet-pbd has no relaxation"},
+        {"run rope_hanging --set native-verlet.substep=2", 2, "has no substep; did you mean substeps?"},
+        {"run nowhere", 2, "there is no scenes/nowhere.yaml; give a path"},
+        {"run rope_hangin", 2, "there is no scenes/rope_hangin.yaml; did you mean rope_hanging?"},
+        {"run scenes/nowhere.yaml", 2, "scenes/nowhere.yaml: No such file"},
+        {"run oscillator --engine still --repeats 0", 0, "still: moves nothing"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         int status = fixture_program(cases[i].arguments);
         if (status != cases[i].status) fail_msg("'%s' ended with %d", cases[i].arguments, status);
-        if (i != sizeof cases / sizeof *cases - 1) fixture_assert_output(cases[i].output);
+        fixture_assert_output(cases[i].output);
     }
 }
 
@@ -153,7 +170,7 @@ static char *update_baseline(const char *options) {
 static void test_update_keeps(void **state) {
     (void)state;
     static const char header[] = "scene,engine,status,metric,value,band\n",
-                      old[] = "oscillator,native-verlet,ok,sag,1,1\n", others[] = "free_fall,null,ok,sag,1,1\n";
+                      old[] = "oscillator,native-verlet,ok,sag,1,1\n", others[] = "free_fall,still,ok,sag,1,1\n";
     char command[500], wanted[300];
     snprintf(wanted, sizeof wanted, "%s%s%s", header, old, others);
     snprintf(command, sizeof command, "mkdir -p %s/tests/baseline && printf '%s' > %s/tests/baseline/metrics.csv",
@@ -169,6 +186,86 @@ static void test_update_keeps(void **state) {
     free(whole);
 }
 
+// The program in the test's directory; its output goes to output there.
+static int run_there(const char *before, const char *arguments) {
+    char command[900];
+    snprintf(command, sizeof command, "cd %s && %s %s %s >output 2>&1", fixture_directory, before, PROGRAM, arguments);
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+// No baseline is wrong usage, and no deviation.
+static void test_no_baseline(void **state) {
+    (void)state;
+    assert_int_equal(run_there("mkdir -p empty && cd empty &&", "check " SCENE_DIRECTORY "/oscillator.yaml"), 2);
+    char *output = fixture_read("empty/output");
+    assert_non_null(
+        strstr(output, "tests/baseline/metrics.csv: cannot be read; 'clothcheck check --update' writes it"));
+    free(output);
+}
+
+static int count_of(const char *name, const char *wanted) {
+    char *text = fixture_read(name);
+    int count = 0;
+    for (char *at = text; (at = strstr(at, wanted)); at++) count++;
+    free(text);
+    return count;
+}
+
+// Results that a directory holds are replaced by the same anew; others are kept or given up by the user's word alone.
+static void test_keeping(void **state) {
+    (void)state;
+#define KEPT "compare --repeats 0 --engine native-verlet --out kept " SCENE_DIRECTORY
+    assert_int_equal(run_there("", KEPT "/oscillator.yaml --engine still"), 0);
+    assert_int_equal(run_there("", KEPT "/oscillator.yaml --engine still"), 0);
+    assert_int_equal(run_there("", KEPT "/free_fall.yaml"), 2);
+    fixture_assert_output(
+        "holds results of oscillator by native-verlet, which would be lost; --append keeps other scenes");
+    fixture_assert_output("--force replaces what is there");
+    assert_int_equal(run_there("", KEPT "/free_fall.yaml --append"), 0);
+    assert_int_equal(count_of("kept/runs.csv", "\noscillator,"), 2);
+    assert_int_equal(count_of("kept/runs.csv", "\nfree_fall,"), 1);
+    assert_true(count_of("kept/series.csv", "\noscillator,native-verlet,") > 100);
+    assert_true(count_of("kept/series.csv", "\nfree_fall,native-verlet,") > 100);
+    // an engine less
+    assert_int_equal(run_there("", KEPT "/oscillator.yaml --append"), 2);
+    fixture_assert_output("holds results of oscillator by still");
+    assert_int_equal(count_of("kept/runs.csv", "\noscillator,"), 2);
+    // of another machine
+    assert_int_equal(
+        run_there("sed -i 's/^processor,.*/processor,Z80/' kept/machine.csv &&", KEPT "/pendulum.yaml --append"), 2);
+    fixture_assert_output("kept/machine.csv: its processor is not '");
+    assert_int_equal(run_there("", KEPT "/free_fall.yaml --force"), 0);
+    assert_int_equal(count_of("kept/runs.csv", "\noscillator,"), 0);
+    assert_int_equal(count_of("kept/runs.csv", "\nfree_fall,"), 1);
+    assert_int_equal(run_there("echo x > kept/runs.csv &&", KEPT "/free_fall.yaml"), 2);
+    fixture_assert_output("kept/runs.csv:1: column 1 is 'x' where it must be scene; --force replaces");
+}
+
+// CPU time is that of all threads: two that share a step take no less than one.
+static void test_threads_count(void **state) {
+    (void)state;
+    double cpu[2];
+    for (int threads = 1; threads <= 2; threads++) {
+        char arguments[300], name[40];
+        snprintf(name, sizeof name, "threads%d", threads);
+        snprintf(arguments, sizeof arguments,
+                 "run " SCENE_DIRECTORY "/cloth_64.yaml --engine native-verlet --repeats 3 --threads %d --out %s",
+                 threads, name);
+        assert_int_equal(run_there("", arguments), 0);
+        snprintf(name, sizeof name, "threads%d/runs.csv", threads);
+        char *text = fixture_read(name), *field = strstr(text, "\ncloth_64,");
+        for (int i = 0; i < 3; i++) field = strchr(field, ',') + 1;
+        if (*field == '"') field = strchr(field + 1, '"');
+        for (int i = 0; i < 5; i++) field = strchr(field, ',') + 1;
+        cpu[threads - 1] = atof(field);
+        free(text);
+    }
+    print_message("%g s by one thread, %g s by two\n", cpu[0], cpu[1]);
+    assert_true(cpu[1] > 0.7 * cpu[0]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
@@ -179,6 +276,9 @@ int main(void) {
         cmocka_unit_test(test_interrupt),
         cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_update_keeps),
+        cmocka_unit_test(test_no_baseline),
+        cmocka_unit_test(test_keeping),
+        cmocka_unit_test(test_threads_count),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

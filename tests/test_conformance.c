@@ -5,6 +5,8 @@
 #include "vector.h"
 #include "verdict.h"
 
+#include <glob.h>
+
 static const char fall[] =
     "name: fall\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1, down: [0, 0, 1]}\nsprings: {stiffness: 50, "
     "shear: 20}\n"
@@ -186,12 +188,9 @@ static void test_momentum(void **state) {
         for (int axis = 0; axis < 3; axis++)
             assert_near(engine->name, end[axis] - start[axis], model->duration * model->velocity[axis], 1e-8);
         // the noise has moved it: a frozen body would pass as well
-        double moved = ck_metric_deviation(ck_metric_find("stretch_rms"), model, &trajectory, &trajectory,
-                                           &comparison.truth.reference);
         double first = ck_metric_find("stretch_rms")->at(model, &trajectory, 0, &comparison.truth.reference);
         double last =
             ck_metric_find("stretch_rms")->at(model, &trajectory, model->frame_count, &comparison.truth.reference);
-        assert_near("a run and itself", moved, 0, 0);
         assert_true(fabs(last - first) > 0.1 * first);
         ck_trajectory_free(&trajectory);
     }
@@ -207,6 +206,10 @@ static void test_order(void **state) {
         if (!fixture_is_solver(engine)) continue;
         ck_Comparison comparison;
         fixture_load(&comparison, engine->order ? turn : turn_rigid);
+        if (!fixture_takes(engine, &comparison.model)) {
+            ck_comparison_free(&comparison);
+            continue;
+        }
         ck_Trajectory trajectory[3];
         for (int level = 0; level < 3; level++) {
             ck_Settings settings = {.substeps = 40u << level};
@@ -254,6 +257,10 @@ static void test_self_consistency(void **state) {
         if (engine->method == CK_METHOD_SEED) continue;
         ck_Comparison comparison;
         fixture_load(&comparison, engine->order ? turn : turn_rigid);
+        if (!fixture_takes(engine, &comparison.model)) {
+            ck_comparison_free(&comparison);
+            continue;
+        }
         ck_Settings wanted = {.substeps = 64};
         ck_Limits limits = ck_limits_default();
         ck_Run run;
@@ -262,7 +269,7 @@ static void test_self_consistency(void **state) {
         double deviation[CK_CONSISTENCY_STEPS];
         assert_int_equal(ck_consistency_measure(deviation, &run, 100, &limits, NULL), CK_OK);
         int order = engine->order ? engine->order : engine->method == CK_METHOD_NONE ? 0 : 2;
-        // the null engine is consistent, and wrong
+        // the engine that stands still is consistent, and wrong
         if (!order) assert_near(engine->name, deviation[0], 0, 0);
         for (int step = 0; order && step + 1 < CK_CONSISTENCY_STEPS; step++)
             assert_near(engine->name, deviation[step + 1] / deviation[step], 1 << order, 0.35 * (1 << order));
@@ -275,17 +282,19 @@ static void test_self_consistency(void **state) {
 static void test_ledger(void **state) {
     (void)state;
     ck_Comparison comparison;
-    fixture_load(&comparison, hang);
+    fixture_load(&comparison, "name: hang\nrope: {particles: 8, spacing: 0.1, mass: 0.4, end_mass: 0.3}\nsprings: "
+                              "{stiffness: 2000, damping: 0.2}\npins: [first]\ngravity: [0, -9.81, 0]\ndrag: 12\n"
+                              "time: {duration: 4, step: 0.02}\n");
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         ck_Ledger ledger = {0};
         ck_Settings used, wanted = {0};
         void *world;
         assert_int_equal(engine->create(&world, &comparison.model, &wanted, &used, &ledger, NULL), CK_OK);
         engine->destroy(world);
-        const char *const quantities[] = {"time step",     "mass", "gravity", "drag", "structural stiffness",
-                                          "spring damping"};
+        const char *const quantities[] = {
+            "time step", "mass", "mass of the last", "gravity", "drag", "structural stiffness", "spring damping"};
         for (size_t quantity = 0; quantity < sizeof quantities / sizeof *quantities; quantity++) {
             bool found = false;
             for (int row = 0; row < ledger.count; row++)
@@ -367,6 +376,31 @@ static void test_level_rope(void **state) {
     ck_comparison_free(&comparison);
 }
 
+// Who refuses a shipped scene whose terms it has: native-rope what is no rope of bars, native-narrow what is not
+// stepped in vectors, and nobody else; or a test that skips what is refused would pass by running nothing.
+static void test_who_refuses(void **state) {
+    (void)state;
+    glob_t found;
+    int taken = 0;
+    assert_int_equal(glob(SCENE_DIRECTORY "/*.yaml", 0, NULL, &found), 0);
+    for (size_t scene = 0; scene < found.gl_pathc; scene++) {
+        ck_Comparison comparison;
+        assert_int_equal(ck_comparison_load(&comparison, found.gl_pathv[scene], NULL), CK_OK);
+        for (int i = 0; i < ck_engine_count(); i++) {
+            const char *name = ck_engine_at(i)->name;
+            if (!fixture_supports(ck_engine_at(i), &comparison.model)) continue;
+            if (fixture_takes(ck_engine_at(i), &comparison.model))
+                taken++;
+            else if (strcmp(name, "native-rope") && strcmp(name, "native-narrow") &&
+                     (strcmp(name, "ode-direct") || comparison.model.spring_count < 1000))
+                fail_msg("%s refuses %s", name, comparison.model.name);
+        }
+        ck_comparison_free(&comparison);
+    }
+    assert_true(taken > 8 * (int)found.gl_pathc);
+    globfree(&found);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_free_fall),
@@ -376,6 +410,7 @@ int main(void) {
         cmocka_unit_test(test_order),
         cmocka_unit_test(test_bitwise_repeat),
         cmocka_unit_test(test_ledger),
+        cmocka_unit_test(test_who_refuses),
         cmocka_unit_test(test_self_consistency),
         cmocka_unit_test(test_network_at_rest),
         cmocka_unit_test(test_sweeps),

@@ -33,7 +33,7 @@ static void check_all(const char *text, const char *metric, Allowed allowed) {
     load(&comparison, text);
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         checked++;
         ck_Trajectory trajectory;
         fixture_run(&trajectory, &comparison.model, engine, NULL, NULL);
@@ -200,7 +200,7 @@ static void test_tunnelling(void **state) {
                       "time: {duration: 0.1, step: 0.004166666666666667}\ntruth: strike\n");
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         ck_Trajectory trajectory;
         fixture_run(&trajectory, &comparison.model, engine, NULL, NULL);
         double tunnelled = value_of(&comparison, &trajectory, "tunnelled");
@@ -228,7 +228,7 @@ static void test_cloth_on_floor(void **state) {
          "time: {duration: 1, step: 0.008333333333333333}\ntruth: bounce\n");
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         ck_Trajectory trajectory;
         fixture_run(&trajectory, &comparison.model, engine, NULL, NULL);
         bool native = !strcmp(engine->family, "native");
@@ -256,7 +256,7 @@ static void test_cloth_on_ball(void **state) {
          "time: {duration: 3, step: 0.016666666666666666}\ntruth: rest\n");
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         if (!strcmp(engine->name, "ode-direct")) continue; // whose cost is that of all tests
         ck_Trajectory trajectory;
         fixture_run(&trajectory, &comparison.model, engine, NULL, NULL);
@@ -277,7 +277,7 @@ static void test_release(void **state) {
     const ck_Model *model = &comparison.model;
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         ck_Trajectory trajectory;
         fixture_run(&trajectory, model, engine, &(ck_Settings){.substeps = 64}, NULL);
         assert_near(engine->name, ck_trajectory_position(&trajectory, 10)[1], 0, 0);
@@ -326,7 +326,7 @@ static void test_passing_by(void **state) {
                       "time: {duration: 0.4, step: 0.02}\n");
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_is_solver(engine) || !fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_is_solver(engine) || !fixture_takes(engine, &comparison.model)) continue;
         ck_Trajectory trajectory;
         fixture_run(&trajectory, &comparison.model, engine, NULL, NULL);
         const double *v = ck_trajectory_velocity(&trajectory, comparison.model.frame_count);
@@ -350,7 +350,7 @@ static void test_many_colliders(void **state) {
     load(&comparison, text);
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        if (!fixture_supports(engine, &comparison.model)) continue;
+        if (!fixture_takes(engine, &comparison.model)) continue;
         ck_Ledger ledger = {0};
         ck_Settings used, wanted = {0};
         void *world;

@@ -1,6 +1,8 @@
 // Scene files: every bad one gets one clear error with its place, and the shipped ones load.
 #include "fixture.h"
 
+#include "vector.h"
+
 #include "scene.h"
 
 #include <glob.h>
@@ -18,7 +20,7 @@ static const struct {
 } bad_scenes[] = {
     {"unknown key", ROPE TIME "stifness: 3\n", ":5:1:", "unknown key stifness; known here: name, about, cloth"},
     {"unknown inner key", "name: r\nrope: {particles: 3, spaceing: 0.1, mass: 1}\n" TIME,
-     ":2:22:", "unknown key spaceing in rope"},
+     ":2:22:", "unknown key spaceing in rope; did you mean spacing?; known here: particles"},
     {"missing body", "name: r\n" TIME, ":1:1:", "needs one body"},
     {"two bodies", ROPE "cloth: {rows: 2, columns: 2, spacing: 1, mass: 1}\n" TIME, ":4:1:", "both rope and cloth"},
     {"missing time", ROPE, ":1:1:", "lacks the key time"},
@@ -47,7 +49,7 @@ static const struct {
     {"zero spacing", "name: r\nrope: {particles: 3, spacing: 0, mass: 1}\n" TIME, ":2:31:", "must be a number above 0"},
     {"zero step", ROPE "time: {duration: 1, step: 0}\n", ":4:27:", "must be a number above 0"},
     {"negative duration", ROPE "time: {duration: -1, step: 0.1}\n", ":4:18:", "must be a number above 0"},
-    {"step beyond duration", ROPE "time: {duration: 1, step: 3}\n", ":4:7:", "is 0.333333 frames"},
+    {"step beyond duration", ROPE "time: {duration: 1, step: 3}\n", ":4:7:", "is 0.333333333 frames"},
     {"restitution above 1", ROPE TIME "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0], restitution: 2}}]\n",
      ":5:72:", "from 0 to 1"},
     {"collider of no shape", ROPE TIME "colliders: [{}]\n", ":5:13:", "none of plane and sphere"},
@@ -97,7 +99,7 @@ static const struct {
     {"too many rows", "name: c\ncloth: {rows: 100000, columns: 100000, spacing: 1, mass: 1}\n" TIME,
      ":2:8:", "asks for 10000000000 particles"},
     {"a step that does not divide", ROPE "time: {duration: 1, step: 0.3}\n",
-     ":4:7:", "is 3.33333 frames; it must be a whole"},
+     ":4:7:", "is 3.33333333 frames; it must be a whole"},
     {"numbers beyond computing", "name: r\nrope: {particles: 3, spacing: 1.0e+200, mass: 1}\n" TIME,
      ":1:1:", "too large"},
     {"more iterations than an int", ROPE TIME "settings: {bullet-implicit: {iterations: 4294967295}}\n",
@@ -120,6 +122,41 @@ static const struct {
      "name: n\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 2}], bars: [[0, 1]]}\n"
      "springs: {stiffness: 9}\nforce: [1, 0, 0]\ntruth: free_fall\n" TIME,
      ":5:8:", "truth free_fall needs"},
+    {"a network that bends",
+     "name: n\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}], bars: "
+     "[[0, 1]]}\nsprings: {stiffness: 9, bend: 1}\n" TIME,
+     ":3:31:", "springs.bend has nothing to act on"},
+    {"a network that shears",
+     "name: n\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}], bars: "
+     "[[0, 1]]}\nsprings: {stiffness: 9, shear: 1}\n" TIME,
+     ":3:32:", "springs.shear has nothing to act on"},
+    {"a rope that shears",
+     "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\nsprings: {stiffness: 9, shear: 1}\n" TIME,
+     ":3:32:", "springs.shear has nothing to act on"},
+    {"a link that bends", "name: r\nrope: {particles: 2, spacing: 1, mass: 1}\nsprings: {stiffness: 9, bend: 1}\n" TIME,
+     ":3:31:", "springs.bend has nothing to act on"},
+    {"a row that shears",
+     "name: c\ncloth: {rows: 1, columns: 3, spacing: 1, mass: 1}\nsprings: {stiffness: 9, shear: 1}\n" TIME,
+     ":3:32:", "springs.shear has nothing to act on"},
+    {"a single particle's spring", "name: r\nrope: {particles: 1, spacing: 1, mass: 1}\nsprings: {stiffness: 9}\n" TIME,
+     ":3:22:", "springs.stiffness has nothing to act on"},
+    {"rigid bars with a stiffness",
+     "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\nsprings: {rigid: true, stiffness: 9}\n" TIME,
+     ":3:35:", "bars that are rigid have none"},
+    {"rigid bars with damping",
+     "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\nsprings: {rigid: true, damping: 9}\n" TIME,
+     ":3:33:", "rigid bars do not stretch"},
+    {"damping without springs",
+     "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\nsprings: {stiffness: 0, damping: 9}\n" TIME,
+     ":3:34:", "springs.damping has nothing to act on"},
+    {"a setting that the engine lacks", ROPE TIME "settings: {bullet-pbd: {relaxation: 1.2}}\n",
+     ":5:25:", "unknown key relaxation in settings.bullet-pbd; known here: substeps, iterations, klst, reordered"},
+    {"a setting of an engine without any", ROPE TIME "settings: {still: {substeps: 2}}\n",
+     ":5:20:", "known here: none"},
+    {"two clocks", ROPE "time: {duration: 1, step: 0.1, fps: 10}\n", ":4:32:", "both step and fps"},
+    {"no clock", ROPE "time: {duration: 1}\n", ":4:7:", "time has none of step and fps"},
+    {"60 Hz in few digits", ROPE "time: {duration: 6, step: 0.0166667}\n",
+     ":4:7:", "fps in place of step says 1/60 s and its like exactly"},
     {"empty file", "", ":1:1:", "is empty"},
     {"not YAML", "name: [\n", ":", "is not YAML"},
     {"a list", "- name\n", ":1:1:", "must be a mapping"},
@@ -222,12 +259,59 @@ static void test_shipped_scenes(void **state) {
     globfree(&found);
 }
 
+// Noise moves free nodes out of the plane of a network, wherever that lies, and across the line of one that has none.
+static void test_network_noise(void **state) {
+    (void)state;
+    static const struct {
+        const char *nodes;
+        double normal[3];
+    } networks[] = {
+        {"[{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}, {at: [0, 1, 0], mass: 1}]", {0, 0, 1}},
+        {"[{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}, {at: [0, 0, 1], mass: 1}]", {0, 1, 0}},
+        {"[{at: [5, 0, 0], mass: 1}, {at: [5, 0, 2], mass: 1}, {at: [5, 3, 1], mass: 1}]", {1, 0, 0}},
+        {"[{at: [0, 0, 0], mass: 1}, {at: [0, 1, 1], mass: 1}, {at: [1, 1, 1], mass: 1}]", {0, -M_SQRT1_2, M_SQRT1_2}},
+    };
+    for (size_t i = 0; i < sizeof networks / sizeof *networks; i++) {
+        char text[600];
+        ck_Comparison quiet, noisy;
+        for (int has_noise = 0; has_noise < 2; has_noise++) {
+            snprintf(text, sizeof text,
+                     "name: n\nnetwork: {nodes: %s, bars: [[0, 1], [1, 2]]}\nsprings: {stiffness: 9}\n%s" TIME,
+                     networks[i].nodes, has_noise ? "noise: {amplitude: 0.1, seed: 4}\n" : "");
+            fixture_load(has_noise ? &noisy : &quiet, text);
+        }
+        for (int node = 0; node < 3; node++) {
+            double moved[3];
+            ck_subtract(moved, noisy.model.position + 3 * node, quiet.model.position + 3 * node);
+            assert_near("along the normal", fabs(ck_dot(moved, networks[i].normal)), ck_length(moved), 1e-12);
+            assert_true(ck_length(moved) > 1e-6);
+        }
+        ck_comparison_free(&quiet);
+        ck_comparison_free(&noisy);
+    }
+    ck_Comparison line;
+    fixture_load(&line,
+                 "name: n\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [0, 0, 2], mass: 1}], bars: [[0, 1]]}\n"
+                 "springs: {stiffness: 9}\nnoise: {amplitude: 0.1, seed: 4}\n" TIME);
+    assert_near("along the line", line.model.position[2], 0, 0);
+    assert_true(ck_length(line.model.position) > 1e-6);
+    ck_comparison_free(&line);
+}
+
+static void test_frames_a_second(void **state) {
+    (void)state;
+    ck_Comparison comparison;
+    fixture_load(&comparison, ROPE "time: {duration: 6, fps: 60}\n");
+    assert_int_equal(comparison.model.frame_count, 360);
+    assert_near("step", comparison.model.step, 1.0 / 60, 0);
+    ck_comparison_free(&comparison);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_scenes),
-        cmocka_unit_test(test_bad_files),
-        cmocka_unit_test(test_every_key),
-        cmocka_unit_test(test_shipped_scenes),
+        cmocka_unit_test(test_bad_scenes),      cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_every_key),       cmocka_unit_test(test_network_noise),
+        cmocka_unit_test(test_frames_a_second), cmocka_unit_test(test_shipped_scenes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,6 +83,13 @@ static void test_shards(void **state) {
     finish(STUDY "%s/4 --shard 4/4", 0);
     finish("merge %s/all %s/1 %s/2 %s/3 %s/4", 0);
     assert_same("whole/stability.csv", "all/stability.csv");
+    assert_true(size_of("whole/machine.csv") > 0 && size_of("all/machine.csv") > 0);
+    // the scene's text counts, not its path
+    finish("stability scenes/../scenes/rope_hanging.yaml --engine native-verlet --engine native-xpbd --engine "
+           "bullet-pbd --jobs 2 --shard 4/4 --out %s/elsewhere",
+           0);
+    finish("merge %s/again %s/elsewhere %s/1 %s/2 %s/3", 0);
+    assert_same("whole/stability.csv", "again/stability.csv");
     finish("stability rope_catenary --engine native-verlet --shard 1/2 --out %s/other", 0);
     finish("merge %s/none %s/1 %s/other", 2);
     finish("merge %s/none %s/empty", 2);

@@ -3,7 +3,7 @@
 // A scene's rows of summary.csv: {metric, uncertainty, nothing: the error of moving nothing, rows}.
 async function factsOf(scene) {
 	const summary = await table("summary.csv");
-	const rows = (summary ? summary.rows : []).filter((row) => row.scene === scene && row.engine !== "null");
+	const rows = (summary ? summary.rows : []).filter((row) => row.scene === scene && row.engine !== "still");
 	const named = rows.find((row) => row.metric) || {};
 	return { metric: named.metric || "position_rms", uncertainty: number(named.uncertainty) || 0, rows };
 }

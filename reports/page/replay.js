@@ -83,7 +83,7 @@ class Replay {
 		box.replaceChildren(element("legend", { textContent: "Engines" }));
 		for (const name of this.bodies.keys()) {
 			if (name === "truth") continue;
-			const input = element("input", { type: "checkbox", checked: name !== "null", value: name });
+			const input = element("input", { type: "checkbox", checked: name !== "still", value: name });
 			input.addEventListener("change", () => this.redraw());
 			box.append(element("label", {}, input, " ", engineName(name)));
 		}

@@ -30,8 +30,8 @@ static void destroy(void *state) {
     (void)state;
 }
 
-const ck_Engine ck_null_engine = {
-    .name = "null",
+const ck_Engine ck_still = {
+    .name = "still",
     .about = "moves nothing: what the harness itself costs",
     .family = "native",
     .version = version,

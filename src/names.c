@@ -1,0 +1,58 @@
+#include "names.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MOST_LETTERS 40
+
+static int least(int a, int b) {
+    return a < b ? a : b;
+}
+
+static int letter(const char *text, int index) {
+    return tolower((unsigned char)text[index]);
+}
+
+// Letters to leave out, add, exchange or swap with their neighbour, each pair of neighbours once.
+static int distance(const char *a, const char *b) {
+    int rows = (int)strlen(a), columns = (int)strlen(b), steps[MOST_LETTERS + 1][MOST_LETTERS + 1];
+    if (rows > MOST_LETTERS || columns > MOST_LETTERS) return MOST_LETTERS;
+    for (int i = 0; i <= rows; i++)
+        for (int j = 0; j <= columns; j++) {
+            steps[i][j] = i ? i : j;
+            if (!i || !j) continue;
+            steps[i][j] = least(least(steps[i - 1][j], steps[i][j - 1]) + 1,
+                                steps[i - 1][j - 1] + (letter(a, i - 1) != letter(b, j - 1)));
+            if (i > 1 && j > 1 && letter(a, i - 1) == letter(b, j - 2) && letter(a, i - 2) == letter(b, j - 1))
+                steps[i][j] = least(steps[i][j], steps[i - 2][j - 2] + 1);
+        }
+    return steps[rows][columns];
+}
+
+const char *ck_name_nearest(const char *typed, ck_NameAt name_at, const void *table) {
+    const char *nearest = NULL, *begun = NULL, *name;
+    int length = (int)strlen(typed), best = length < 3 ? 1 : length / 3;
+    for (int i = 0; (name = name_at(table, i)); i++) {
+        int steps = distance(typed, name);
+        bool begins = !strncmp(typed, name, (size_t)length);
+        if (steps <= best && (!nearest || steps < best || begins)) nearest = name, best = steps;
+        if (!begun && length >= 3 && begins) begun = name;
+    }
+    return nearest ? nearest : begun;
+}
+
+const char *ck_name_hint(char *out, size_t size, const char *typed, ck_NameAt name_at, const void *table) {
+    const char *nearest = ck_name_nearest(typed, name_at, table);
+    snprintf(out, size, nearest ? "; did you mean %s?" : "", nearest);
+    return out;
+}
+
+const char *ck_name_list(char *out, size_t size, ck_NameAt name_at, const void *table) {
+    const char *name;
+    *out = 0;
+    for (size_t i = 0, used = 0; (name = name_at(table, (int)i)) && used < size; i++)
+        used += (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "", name);
+    return out;
+}
