@@ -73,8 +73,9 @@ static const struct {
     [UPDATE] = {"update", CK_TAKES_UPDATE, true, "--update             write the baseline anew, and print what moved"},
     [KEPT] = {"kept", CK_TAKES_SHARD, true,
               "--kept               run nothing: write what the journal in --out holds, or fail"},
-    [APPEND] = {"append", CK_TAKES_KEEPING, true,
-                "--append             keep the results of other scenes that --out holds"},
+    [APPEND] =
+        {"append", CK_TAKES_KEEPING, true,
+         "--append             keep the results of other scenes that --out holds; of tune, of other engines, too"},
     [FORCE] = {"force", CK_TAKES_KEEPING, true, "--force              replace whatever results --out holds"},
     [ROUNDS] = {"rounds", CK_TAKES_BENCH, false, "--rounds N           repeats, 1 to 99 (default 7)"},
     [LARGEST] = {"largest", CK_TAKES_BENCH, false,
@@ -337,7 +338,7 @@ static ck_Status fail_option(const ck_Command *command, int option, const char *
 
 // What is asked, in which the way to the answer does not count.
 static bool is_of_question(int option) {
-    return option != OUT && option != JOBS && option != SHARD && option != KEPT;
+    return option != OUT && option != JOBS && option != SHARD && option != KEPT && option != APPEND && option != FORCE;
 }
 
 ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv,

@@ -24,7 +24,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
                         &arguments->options.limits, error);
     const ck_Study study = ck_needs_study(&needs);
     if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
-    if (!status) status = ck_csv_open(&csv, arguments->out, &ck_layouts[CK_NEEDS], error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_NEEDS, error);
     if (!status) ck_needs_write(&needs, rows, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) ck_study_command_done(command, &study, "needs.csv");
@@ -35,7 +35,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
 }
 
 static int run_command(const ck_Command *command, int argc, char **argv) {
-    return ck_study_command(command, argc, argv, run);
+    return ck_study_command(command, CK_NEEDS, argc, argv, run);
 }
 
 const ck_Command ck_command_needs = {
@@ -45,7 +45,7 @@ const ck_Command ck_command_needs = {
     .help = "Leaves out one modelled term at a time, and every second particle, and says which of them change any "
             "metric by\nmore than --error (default 0.01), and what each costs; writes needs.csv. The engine is the "
             "first that models all\nthere is, or --engine.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR,
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR,
     .seconds = 60,
     .run = run_command,
 };

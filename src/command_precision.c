@@ -11,8 +11,8 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     const ck_Study study = ck_precision_study(&precision);
     // it times its runs: side by side they would slow each other down
     if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
-    if (!status) status = ck_csv_open(&csv, command->arguments->out, &ck_layouts[CK_PRECISION], error);
-    if (!status) status = ck_csv_open(&summary, command->arguments->out, &ck_layouts[CK_PRECISION_SUMMARY], error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_PRECISION, error);
+    if (!status) status = ck_study_command_open(command, &summary, CK_PRECISION_SUMMARY, error);
     if (!status) ck_precision_write(&precision, rows, &csv, &summary);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) status = ck_csv_close(&summary, error);
@@ -25,7 +25,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
 }
 
 static int run_command(const ck_Command *command, int argc, char **argv) {
-    return ck_study_command(command, argc, argv, run);
+    return ck_study_command(command, CK_PRECISION, argc, argv, run);
 }
 
 const ck_Command ck_command_precision = {
@@ -35,7 +35,7 @@ const ck_Command ck_command_precision = {
     .help = "Runs every engine over time steps from an eighth to sixteen times as many substeps as its rule takes, and "
             "over\niterations; writes precision.csv with error, cost and the Pareto front, and precision_summary.csv "
             "with orders,\nfloors and the cost to reach 10, 1 and 0.1 %.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD,
     .seconds = 20,
     .run = run_command,
 };

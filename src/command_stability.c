@@ -10,7 +10,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     ck_Status status = ck_stability_map_create(&map, command->comparison, &command->arguments->options, error);
     const ck_Study study = ck_stability_map_study(&map);
     if (!status) status = ck_study_command_run(command, &study, 0, &rows, error);
-    if (!status) status = ck_csv_open(&csv, command->arguments->out, &ck_layouts[CK_STABILITY], error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_STABILITY, error);
     if (!status) ck_stability_map_write(&map, rows, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) ck_study_command_done(command, &study, "stability.csv");
@@ -21,7 +21,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
 }
 
 static int run_command(const ck_Command *command, int argc, char **argv) {
-    return ck_study_command(command, argc, argv, run);
+    return ck_study_command(command, CK_STABILITY, argc, argv, run);
 }
 
 const ck_Command ck_command_stability = {
@@ -30,7 +30,7 @@ const ck_Command ck_command_stability = {
     .about = "where methods fail: time step against stiffness: stability.csv",
     .help = "Pushes the scene's rest and steps it: a map over time steps, stiffnesses and iterations, and the critical "
             "step by\nbisection to 1 % beside what theory says; writes stability.csv.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD,
     .seconds = 10,
     .run = run_command,
 };

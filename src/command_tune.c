@@ -31,7 +31,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     options.cache = cache;
     ck_Tuning tuning;
     ck_Csv csv = {0};
-    ck_Status status = ck_csv_open(&csv, arguments->out, &ck_layouts[CK_TUNE], error);
+    ck_Status status = ck_study_command_open(command, &csv, CK_TUNE, error);
     if (!status) status = ck_tune_run(&tuning, command->comparison, &options, &csv, error);
     if (options.progress) fprintf(stderr, "\r\033[K");
     if (!status) status = ck_csv_close(&csv, error);
@@ -45,7 +45,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
 }
 
 static int run_command(const ck_Command *command, int argc, char **argv) {
-    return ck_study_command(command, argc, argv, run);
+    return ck_study_command(command, CK_TUNE, argc, argv, run);
 }
 
 const ck_Command ck_command_tune = {
@@ -56,7 +56,7 @@ const ck_Command ck_command_tune = {
             "those that\ncome closest to the truth, or to --like ENGINE; prints them as lines of a scene file, and "
             "writes every evaluation to\ntune.csv. Needs one --engine. Work is sweeps over all springs, one more for "
             "each substep.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_GOAL,
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_GOAL,
     .seconds = 60,
     .run = run_command,
 };

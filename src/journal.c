@@ -56,7 +56,8 @@ bool ck_journal_is_same(const char *question, const char *other) {
 static void end_row(int end, void *context) {
     (void)end;
     Reader *reader = context;
-    bool is_whole = reader->field == 3 + CK_JOURNAL_VALUES, is_asked = ck_journal_is_same(reader->question, reader->wanted);
+    bool is_whole = reader->field == 3 + CK_JOURNAL_VALUES,
+         is_asked = ck_journal_is_same(reader->question, reader->wanted);
     reader->row.is_done = true;
     if (reader->row_index > 0 && is_whole && is_asked && reader->kept)
         reader->kept(reader->context, reader->key, &reader->row);

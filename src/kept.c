@@ -11,10 +11,16 @@ static bool has_scene(const ck_Kept *kept, const char *name) {
     return false;
 }
 
-static bool has_engine(const ck_CompareOptions *options, const char *name) {
-    for (int i = 0; i < options->engine_count; i++)
-        if (!strcmp(options->engines[i]->name, name)) return true;
+static bool has_engine(const ck_Kept *kept, const char *name) {
+    for (int i = 0; i < kept->options->engine_count; i++)
+        if (!strcmp(kept->options->engines[i]->name, name)) return true;
     return false;
+}
+
+// Whether a row is of what will be written anew; else it may stay where others are kept.
+static bool is_again(const ck_Kept *kept, const ck_CsvTable *table, int row) {
+    return has_scene(kept, ck_csv_table_text(table, row, 0)) &&
+           (!kept->by_engine || has_engine(kept, ck_csv_table_text(table, row, 1)));
 }
 
 // As ck_csv_table_read, but a file that is not there has no rows.
@@ -26,20 +32,20 @@ static ck_Status read_table(ck_CsvTable *table, const char *directory, const ck_
                    status == CK_BAD_INPUT ? "; --force replaces what is there, another --out leaves it" : "");
 }
 
-static ck_Status check_lost(const ck_Kept *kept, bool keeps_others, const ck_CompareOptions *options, ck_Error *error) {
-    ck_CsvTable runs;
-    ck_Status status = read_table(&runs, kept->directory, &ck_layouts[CK_RUNS], error);
-    for (int i = 0; i < runs.row_count && !status; i++) {
-        const char *scene = ck_csv_table_text(&runs, i, 0), *engine = ck_csv_table_text(&runs, i, 1);
-        bool is_again = has_scene(kept, scene);
-        if ((is_again && has_engine(options, engine)) || (!is_again && keeps_others)) continue;
+static ck_Status check_lost(const ck_Kept *kept, const ck_Layout *layout, bool keeps_others, ck_Error *error) {
+    ck_CsvTable table;
+    ck_Status status = read_table(&table, kept->directory, layout, error);
+    for (int i = 0; i < table.row_count && !status; i++) {
+        const char *scene = ck_csv_table_text(&table, i, 0), *engine = ck_csv_table_text(&table, i, 1);
+        if (has_scene(kept, scene) && has_engine(kept, engine)) continue;
+        bool can_stay = !is_again(kept, &table, i);
+        if (can_stay && keeps_others) continue;
         status = ck_fail(error, CK_BAD_INPUT,
                          "%s/%s: holds results of %s by %s, which would be lost; %s--force replaces what is there, "
                          "another --out leaves it",
-                         kept->directory, ck_layouts[CK_RUNS].file, scene, engine,
-                         is_again ? "" : "--append keeps other scenes, ");
+                         kept->directory, layout->file, scene, engine, can_stay ? "--append keeps them, " : "");
     }
-    ck_csv_table_free(&runs);
+    ck_csv_table_free(&table);
     return status;
 }
 
@@ -71,8 +77,8 @@ static ck_Status check_machine(const ck_Kept *kept, ck_Error *error) {
     return check.status;
 }
 
-ck_Status ck_kept_check(const ck_Kept *kept, bool keeps_others, const ck_CompareOptions *options, ck_Error *error) {
-    ck_Status status = check_lost(kept, keeps_others, options, error);
+ck_Status ck_kept_check(const ck_Kept *kept, const ck_Layout *layout, bool keeps_others, ck_Error *error) {
+    ck_Status status = check_lost(kept, layout, keeps_others, error);
     return status || !keeps_others ? status : check_machine(kept, error);
 }
 
@@ -80,7 +86,7 @@ ck_Status ck_kept_copy(const ck_Kept *kept, ck_Csv *csv, const ck_Layout *layout
     ck_CsvTable table;
     ck_Status status = read_table(&table, kept->directory, layout, error);
     for (int row = 0; row < table.row_count && !status; row++)
-        for (int i = 0; i < table.column_count && !has_scene(kept, ck_csv_table_text(&table, row, 0)); i++)
+        for (int i = 0; i < table.column_count && !is_again(kept, &table, row); i++)
             ck_csv_text(csv, ck_csv_table_text(&table, row, i));
     ck_csv_table_free(&table);
     return status;

@@ -25,7 +25,13 @@ static ck_Status find_truth(ck_Comparison *comparison, const ck_Arguments *argum
     return status;
 }
 
-int ck_study_command(const ck_Command *command, int argc, char **argv,
+ck_Status ck_study_command_open(const ck_StudyCommand *command, ck_Csv *csv, ck_LayoutName layout, ck_Error *error) {
+    ck_Status status = ck_csv_open(csv, command->arguments->out, &ck_layouts[layout], error);
+    if (status || !command->arguments->appends) return status;
+    return ck_kept_copy(&command->kept, csv, &ck_layouts[layout], error);
+}
+
+int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, char **argv,
                      ck_Status (*run)(const ck_StudyCommand *command, ck_Error *error)) {
     ck_Error error = {0};
     ck_Arguments arguments;
@@ -38,9 +44,13 @@ int ck_study_command(const ck_Command *command, int argc, char **argv,
     ck_command_catch_signals();
     int failed = status ? 0 : ck_path_make(arguments.out);
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", arguments.out, strerror(failed));
+    ck_StudyCommand study = {.arguments = &arguments,
+                             .comparison = &comparison,
+                             .kept = {arguments.out, &comparison, 1, &arguments.options, layout == CK_TUNE}};
+    if (!status && !arguments.forces)
+        status = ck_kept_check(&study.kept, &ck_layouts[layout], arguments.appends, &error);
     if (!status) status = find_truth(&comparison, &arguments, &error);
     if (!status) {
-        ck_StudyCommand study = {.arguments = &arguments, .comparison = &comparison};
         write_question(&study);
         status = run(&study, &error);
     }

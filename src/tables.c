@@ -14,9 +14,9 @@ ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping ke
     *tables = (ck_Tables){0};
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-    const ck_Kept kept = {directory, comparisons, count};
+    const ck_Kept kept = {directory, comparisons, count, options, false};
     ck_Status status =
-        keeping == CK_KEEP_NONE ? CK_OK : ck_kept_check(&kept, keeping == CK_KEEP_OTHERS, options, error);
+        keeping == CK_KEEP_NONE ? CK_OK : ck_kept_check(&kept, &ck_layouts[CK_RUNS], keeping == CK_KEEP_OTHERS, error);
     for (int i = 0; i < CK_COMPARISON_LAYOUTS && !status; i++) {
         status = ck_csv_open(&tables->csv[i], directory, &ck_layouts[i], error);
         if (!status && keeping == CK_KEEP_OTHERS && i != CK_MACHINE)

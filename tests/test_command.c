@@ -220,8 +220,7 @@ static void test_keeping(void **state) {
     assert_int_equal(run_there("", KEPT "/oscillator.yaml --engine still"), 0);
     assert_int_equal(run_there("", KEPT "/oscillator.yaml --engine still"), 0);
     assert_int_equal(run_there("", KEPT "/free_fall.yaml"), 2);
-    fixture_assert_output(
-        "holds results of oscillator by native-verlet, which would be lost; --append keeps other scenes");
+    fixture_assert_output("holds results of oscillator by native-verlet, which would be lost; --append keeps them");
     fixture_assert_output("--force replaces what is there");
     assert_int_equal(run_there("", KEPT "/free_fall.yaml --append"), 0);
     assert_int_equal(count_of("kept/runs.csv", "\noscillator,"), 2);
@@ -243,29 +242,6 @@ static void test_keeping(void **state) {
     fixture_assert_output("kept/runs.csv:1: column 1 is 'x' where it must be scene; --force replaces");
 }
 
-// CPU time is that of all threads: two that share a step take no less than one.
-static void test_threads_count(void **state) {
-    (void)state;
-    double cpu[2];
-    for (int threads = 1; threads <= 2; threads++) {
-        char arguments[300], name[40];
-        snprintf(name, sizeof name, "threads%d", threads);
-        snprintf(arguments, sizeof arguments,
-                 "run " SCENE_DIRECTORY "/cloth_64.yaml --engine native-verlet --repeats 3 --threads %d --out %s",
-                 threads, name);
-        assert_int_equal(run_there("", arguments), 0);
-        snprintf(name, sizeof name, "threads%d/runs.csv", threads);
-        char *text = fixture_read(name), *field = strstr(text, "\ncloth_64,");
-        for (int i = 0; i < 3; i++) field = strchr(field, ',') + 1;
-        if (*field == '"') field = strchr(field + 1, '"');
-        for (int i = 0; i < 5; i++) field = strchr(field, ',') + 1;
-        cpu[threads - 1] = atof(field);
-        free(text);
-    }
-    print_message("%g s by one thread, %g s by two\n", cpu[0], cpu[1]);
-    assert_true(cpu[1] > 0.7 * cpu[0]);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
@@ -278,7 +254,6 @@ int main(void) {
         cmocka_unit_test(test_update_keeps),
         cmocka_unit_test(test_no_baseline),
         cmocka_unit_test(test_keeping),
-        cmocka_unit_test(test_threads_count),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

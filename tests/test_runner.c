@@ -4,6 +4,7 @@
 #include "clock.h"
 #include "verdict.h"
 
+#include <pthread.h>
 #include <signal.h>
 
 static const char *version(void) {
@@ -77,6 +78,19 @@ static ck_Status create_refuse(void **state, const ck_Model *model, const ck_Set
 static ck_StepResult step_slowly(void *state) {
     (void)state;
     for (double start = ck_thread_cpu(); ck_thread_cpu() - start < 0.02;) continue;
+    return CK_STEP_OK;
+}
+
+// Works for a hundredth of a second, in a thread that the caller waits for.
+static void *work(void *unused) {
+    for (double start = ck_thread_cpu(); ck_thread_cpu() < start + 0.01;) continue;
+    return unused;
+}
+
+static ck_StepResult step_in_a_thread(void *state) {
+    pthread_t thread;
+    (void)state;
+    if (pthread_create(&thread, NULL, work, NULL) || pthread_join(thread, NULL)) return CK_STEP_NO_MEMORY;
     return CK_STEP_OK;
 }
 
@@ -229,6 +243,23 @@ static void test_verdict(void **state) {
     ck_comparison_free(&comparison);
 }
 
+// CPU time is that of every thread, whoever of them did the work.
+static void test_threads_count(void **state) {
+    (void)state;
+    static const ck_Engine threaded = ENGINE("threaded", create, step_in_a_thread);
+    ck_Comparison comparison;
+    fixture_load(&comparison, scene);
+    ck_Limits limits = ck_limits_default();
+    ck_Run run;
+    assert_int_equal(ck_run_measure(&run, &comparison.model, &threaded, &(ck_Settings){0}, &limits, NULL), CK_OK);
+    assert_int_equal(run.status, CK_RUN_OK);
+    assert_int_equal(ck_run_time(&run, INFINITY, &limits, NULL), CK_OK);
+    assert_true(run.measured_cpu >= 0.01 * comparison.model.frame_count);
+    assert_true(ck_timing_median(&run.timing) >= 0.01 * comparison.model.frame_count);
+    ck_run_free(&run);
+    ck_comparison_free(&comparison);
+}
+
 static void test_quantiles(void **state) {
     (void)state;
     ck_Timing timing = {.cpu = {5, 1, 4, 2, 3}, .repeat_count = 5};
@@ -242,6 +273,7 @@ static void test_quantiles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_hostile_engines), cmocka_unit_test(test_foreseen),
-                                       cmocka_unit_test(test_verdict), cmocka_unit_test(test_quantiles)};
+                                       cmocka_unit_test(test_threads_count), cmocka_unit_test(test_verdict),
+                                       cmocka_unit_test(test_quantiles)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

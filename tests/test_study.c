@@ -224,18 +224,35 @@ static void test_half(void **state) {
     finish("needs tests/cases/halved_rope.yaml --out %s/half", 0);
     find_row(row, sizeof row, "half/needs.csv", "halve_rope,native-verlet,every second particle,sag");
     assert_near("sag, of half", field_of(row, 6) - field_of(row, 5), 0.019, 5e-4);
-    finish("needs tests/cases/no_half.yaml --out %s/half", 0);
+    finish("needs tests/cases/no_half.yaml --append --out %s/half", 0);
     fixture_assert_output("every second particle    not tried: no coarser grid of square cells has its size");
     find_row(row, sizeof row, "half/needs.csv", "halve69,native-verlet,every second particle,");
     assert_non_null(strstr(row, ",refused,"));
     assert_null(strstr(row, "inf"));
 }
 
+// A study's file is not written over by that of another scene, but by its own anew.
+static void test_keeping(void **state) {
+    (void)state;
+    char row[1000];
+    finish("needs oscillator --engine native-verlet --out %s/keep", 0);
+    finish("needs oscillator --engine native-verlet --out %s/keep", 0);
+    finish("needs pendulum --engine native-bars --out %s/keep", 2);
+    fixture_assert_output("keep/needs.csv: holds results of oscillator by native-verlet, which would be lost");
+    finish("needs pendulum --engine native-bars --out %s/keep --append", 0);
+    find_row(row, sizeof row, "keep/needs.csv", "oscillator,native-verlet,");
+    find_row(row, sizeof row, "keep/needs.csv", "pendulum,native-bars,");
+    finish("needs pendulum --engine native-bars --out %s/keep --force", 0);
+    char *text = read_text("keep/needs.csv");
+    assert_null(strstr(text, "oscillator"));
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),      cmocka_unit_test(test_shards),
-        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),  cmocka_unit_test(test_needs),
-        cmocka_unit_test(test_half),        cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),     cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical), cmocka_unit_test(test_needs),
+        cmocka_unit_test(test_half),        cmocka_unit_test(test_keeping),  cmocka_unit_test(test_precision),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
