@@ -308,6 +308,10 @@ const ck_Spring *ck_model_spring_of_kind(const ck_Model *model, ck_SpringKind ki
 
 void ck_model_field(const ck_Model *model, int particle, double *acceleration) {
     double push[3];
+    if (!(model->terms & CK_TERM_FORCE)) {
+        memcpy(acceleration, model->gravity, 3 * sizeof(double));
+        return;
+    }
     for (int axis = 0; axis < 3; axis++) push[axis] = model->force[axis] / model->mass[particle];
     for (int axis = 0; axis < 3; axis++) acceleration[axis] = model->gravity[axis] + push[axis];
     // a force that carries the weight leaves nothing, not the rounding of it

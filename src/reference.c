@@ -21,17 +21,17 @@ void ck_reference_accelerate(const ck_Model *model, const double *position, cons
         double d[3], v[3];
         ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
         ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
-        double length = ck_length(d);
-        double pull = (spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) / length) / length;
-        ck_add_scaled(acceleration + 3 * spring->a, pull / model->mass[spring->a], d);
-        ck_add_scaled(acceleration + 3 * spring->b, -pull / model->mass[spring->b], d);
+        double length = ck_length(d), inverse = 1 / length;
+        double pull = (spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) * inverse) * inverse;
+        ck_add_scaled(acceleration + 3 * spring->a, pull, d);
+        ck_add_scaled(acceleration + 3 * spring->b, -pull, d);
     }
     for (int i = 0; i < model->particle_count; i++) {
-        double field[3];
+        double field[3], inverse = 1 / model->mass[i];
         ck_model_field(model, i, field);
         for (int axis = 0; axis < 3; axis++) {
-            double *a = acceleration + 3 * i + axis;
-            *a = model->pinned[i] ? 0 : *a + field[axis] - model->drag * velocity[3 * i + axis];
+            double *a = acceleration + 3 * i + axis; // the force so far
+            *a = model->pinned[i] ? 0 : *a * inverse + field[axis] - model->drag * velocity[3 * i + axis];
         }
     }
 }
