@@ -9,7 +9,7 @@
 #define MOST_TIMES 240
 #define MARKS 8 // on each line over time
 
-// null moves nothing, which is of no interest beside what the others do.
+// What moves nothing is of no interest beside what the others do.
 static bool is_shown(const char *engine) {
     return strcmp(engine, "still") != 0;
 }

@@ -151,13 +151,13 @@ static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int
     return one;
 }
 
-// null moves nothing: it shows what the harness costs, and what an error is worth.
-static bool is_null(const ck_Summary *one) {
+// It moves nothing: it shows what the harness costs, and what an error is worth.
+static bool is_still(const ck_Summary *one) {
     return !strcmp(one->engine, "still");
 }
 
 bool ck_summary_counts(const ck_Summary *one) {
-    return !is_null(one) && one->is_better && !strcmp(one->status, "ok") && !isnan(one->told) && one->cost > 0;
+    return !is_still(one) && one->is_better && !strcmp(one->status, "ok") && !isnan(one->told) && one->cost > 0;
 }
 
 // An error that is not half of what moving nothing has answers nothing, unless nothing is what should move.
@@ -168,8 +168,8 @@ static void set_beside(const ck_ReportData *data, ck_Summary *one) {
         const ck_Summary *other = &data->summary[i];
         if (strcmp(other->scene, one->scene)) continue;
         one->duration = fmax(one->duration, other->timed);
-        bool tells = is_null(other) && other->error > 1e-9 && !(other->error <= other->uncertainty);
-        if (tells && one->error > 0.5 * other->error) one->is_better = is_null(one);
+        bool tells = is_still(other) && other->error > 1e-9 && !(other->error <= other->uncertainty);
+        if (tells && one->error > 0.5 * other->error) one->is_better = is_still(one);
     }
 }
 

@@ -253,8 +253,9 @@ static double in_quarter(double (*measure)(const ck_Trajectory *, int), const ck
 
 // A blow-up that stays finite: it is as fast as a body that fell a hundredth of its size, or moves by a thousandth of
 // it from frame to frame, in the last quarter at least a tenth of the second's: what is clamped comes and goes. One
-// whose fastest particle has kept its speed to 1 % over the last frames is held by a clamp of the engine's.
-static Class judge(const ck_Run *run, double size, double gravity, double *strain, double *speed) {
+// whose fastest particle has kept its speed to 1 % over the last frames is held by a clamp of the engine's. What came to
+// rest is ok, however soft: its strain beyond the rest's says by how much.
+static Class judge(const ck_Run *run, double rest_strain, double size, double gravity, double *strain, double *speed) {
     const ck_Trajectory *path = &run->trajectory;
     const ck_Model *model = run->model;
     *strain = ck_springs_largest_strain(model, ck_trajectory_position(path, FRAMES));
@@ -268,7 +269,7 @@ static Class judge(const ck_Run *run, double size, double gravity, double *strai
     if (*speed == 0 && !memcmp(ck_trajectory_position(path, FRAMES), ck_trajectory_position(path, 0),
                                3 * sizeof(double) * (size_t)model->particle_count))
         return FROZEN;
-    if (*strain > 1) return OVERSTRETCHED;
+    if (*strain > 1 + rest_strain && *speed > ck_metric_still_speed(model)) return OVERSTRETCHED;
     if (keeps_on && *speed > ck_metric_still_speed(model) && (model->terms & (CK_TERM_DRAG | CK_TERM_DAMPING)))
         return UNSETTLED;
     return OK;
@@ -329,7 +330,7 @@ static ck_Status probe(Probe *out, const ck_StabilityMap *map, const ck_Stabilit
         ck_model_mean_field(&model, field);
         status = ck_run_measure(&run, &model, one->engine, &wanted, &map->options->limits, error);
         if (!status && run.trajectory.frame_count == FRAMES + 1)
-            out->class = judge(&run, base->size, ck_length(field), &out->strain, &out->speed);
+            out->class = judge(&run, rest->strain, base->size, ck_length(field), &out->strain, &out->speed);
         else if (!status)
             out->class = class_of(&run);
         snprintf(out->reason, sizeof out->reason, "%.255s", run.reason);

@@ -1,11 +1,13 @@
 // The question that the page is opened for: which solver for a scene, within an error, and at what cost.
 
-// A scene's rows of summary.csv: {metric, uncertainty, nothing: the error of moving nothing, rows}.
+// A scene's rows of summary.csv: {metric, isKnown: whether any error is, uncertainty, rows}.
 async function factsOf(scene) {
 	const summary = await table("summary.csv");
 	const rows = (summary ? summary.rows : []).filter((row) => row.scene === scene && row.engine !== "still");
 	const named = rows.find((row) => row.metric) || {};
-	return { metric: named.metric || "position_rms", uncertainty: number(named.uncertainty) || 0, rows };
+	return {
+		metric: named.metric || "position_rms", isKnown: Boolean(named.metric), uncertainty: number(named.uncertainty) || 0, rows,
+	};
 }
 
 // What was tried in the precision study: {engine, source, error, told, cost in ms of CPU per simulated second, …}.
@@ -69,6 +71,8 @@ function settingsText(way) {
 function answerText(scene, tolerance, { within, beyond }, facts) {
 	if (!within.length && facts.uncertainty > tolerance)
 		return [`The truth of ${scene} is only known to ${percent(facts.uncertainty)}: nobody can say.`];
+	if (!within.length && !beyond.length && !facts.isKnown)
+		return [`Nobody can say for ${scene}: it has no truth that tells solvers apart. How far they are from each other is below.`];
 	if (!within.length && !beyond.length) return [`No engine has an answer on ${scene}: the table says why.`];
 	if (!within.length)
 		return [`No engine comes within ${percent(tolerance)} on ${scene}; nearest is ${beyond[0].engine}, ${percent(beyond[0].error)} off.`];
@@ -92,7 +96,7 @@ function answerRow(way, best, isWithin) {
 function otherRows(facts, best) {
 	const shown = new Set([...best.within, ...best.beyond].map((way) => way.engine));
 	return facts.rows.filter((row) => !shown.has(row.engine)).map((row) => ({
-		engine: row.engine, within: row.status !== "ok" ? row.status : row.error === "nan" ? "no truth" : "no better than null",
+		engine: row.engine, within: row.status !== "ok" ? row.status : row.error === "nan" ? "no truth" : "no better than still",
 		error: row.error === "nan" ? "" : row.error, "ms CPU per s": "", "times the cheapest": "", settings: "", "measured in": "runs.csv",
 	}));
 }
@@ -114,8 +118,8 @@ async function startAnswer() {
 	const precision = await table("precision.csv");
 	const summary = await table("summary.csv");
 	const studied = new Set(precision ? precision.rows.map((row) => row.scene) : []);
-	const measured = new Set((summary ? summary.rows : []).filter((row) => row.metric).map((row) => row.scene));
-	const names = report.scenes.map((scene) => scene.name).filter((name) => studied.has(name) || measured.has(name));
+	const compared = new Set((summary ? summary.rows : []).map((row) => row.scene));
+	const names = report.scenes.map((scene) => scene.name).filter((name) => studied.has(name) || compared.has(name));
 	if (!names.length) return;
 	const select = document.getElementById("answer-scene");
 	const first = ["cloth_two_corners", ...studied].find((name) => names.includes(name));

@@ -105,6 +105,14 @@ test("errors that cancel by chance are not recommended, and the cheapest of what
 	assert.deepEqual(best.beyond.map(({ engine }) => engine), ["poor"]);
 });
 
+test("a scene without a truth has no answer, and it is said", async () => {
+	const told = await page.evaluate(() => answerText("cloth_on_sphere", 0.01, { within: [], beyond: [] },
+		{ metric: "position_rms", isKnown: false, uncertainty: 0, rows: [] }).join(""));
+	assert.match(told, /^Nobody can say for cloth_on_sphere: it has no truth that tells solvers apart/);
+	const scenes = await page.locator("#answer-scene option").allTextContents();
+	assert.deepEqual(scenes.toSorted(), ["bounce", "cloth_two_corners", "rope_hanging"]);
+});
+
 test("the summary holds the numbers of the CSVs", async () => {
 	for (const row of csvRows("charts/summary.csv")) {
 		const cell = page.locator(`#summary-table tr:has(a:text-is("${row.scene}")) td[data-engine="${row.engine}"]`);
