@@ -184,7 +184,7 @@ static int iterate(Newton *newton, double *energy, double *residual, double *gra
     int iteration = 0;
     *energy = energy_of(newton->model, newton->position, gradient);
     *residual = norm_of_free(newton->model, gradient) / newton->load;
-    for (; iteration < MAX_ITERATIONS; iteration++) {
+    for (; iteration < MAX_ITERATIONS && !ck_child_interrupted; iteration++) {
         bool definite = factorise(newton, shift);
         while (!definite && shift < 1e6 * newton->scale) {
             shift = fmax(4 * shift, 1e-6 * newton->scale);
@@ -335,7 +335,7 @@ static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, doub
     ck_Status status = CK_OK;
     double still = ck_metric_still_speed(model), speed = INFINITY;
     for (int frame = 0; frame < model->frame_count && !(frame > 10 && speed < still) && !status; frame++) {
-        for (uint32_t i = 0; i < substeps; i++) fall_by_a_step(&fall);
+        for (uint32_t i = 0; i < substeps && !ck_child_interrupted; i++) fall_by_a_step(&fall);
         speed = fastest(&fall);
         status = speed >= 0 ? ck_child_check(error)
                                  : ck_fail(error, CK_REFUSED, "%s: diverges on the way to its equilibrium", model->name);

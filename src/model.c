@@ -76,17 +76,6 @@ static ck_Status set_pins(ck_Model *model, const ck_Scene *scene, ck_Error *erro
     return status;
 }
 
-// Whether a particle is in an earlier release, or among the first so many of the last one.
-static bool is_released_before(const ck_Model *model, int particle, int of_last) {
-    for (int i = 0; i < model->release_count; i++) {
-        const ck_Release *release = &model->releases[i];
-        int count = i + 1 < model->release_count ? release->particle_count : of_last;
-        for (int j = 0; j < count; j++)
-            if (release->particles[j] == particle) return true;
-    }
-    return false;
-}
-
 static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
     const ck_SceneRelease *from = &scene->file->release[index];
     ck_Release *release = &model->releases[model->release_count++];
@@ -109,9 +98,11 @@ static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t in
             if (!model->pinned[chosen[j]])
                 return ck_scene_fail(scene, path, error,
                                      "%s is not pinned, so that it cannot be released; add it to pins", from->pins[i]);
-        for (int j = 0; j < count; j++)
-            if (is_released_before(model, chosen[j], release->particle_count + j))
+        for (int j = 0; j < count; j++) {
+            if (model->released[chosen[j]])
                 return ck_scene_fail(scene, path, error, "%s is already let go; name it once", from->pins[i]);
+            model->released[chosen[j]] = true;
+        }
         release->particle_count += count;
     }
     return CK_OK;
@@ -153,10 +144,12 @@ static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error 
     return status;
 }
 
-// What is said of springs is modelled by some, or it is an error: nothing is left out in silence.
+// What is said of springs is modelled, or it is an error: nothing is left out in silence. A body too small to have
+// springs of a kind is none.
 static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneSprings *springs = scene->file->springs;
     if (!springs) return CK_OK;
+    bool is_none = !(springs->stiffness > 0) && !(springs->shear > 0) && !(springs->bend > 0) && !springs->rigid;
     const struct {
         const char *path;
         double value;
@@ -165,18 +158,17 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
     } rules[] = {
         {"springs.stiffness", springs->stiffness, springs->rigid, "bars that are rigid have none; keep one of the two"},
         {"springs.damping", springs->damping, springs->rigid, "rigid bars do not stretch, so that it damps nothing"},
-        {"springs.stiffness", springs->stiffness, !ck_model_spring_of_kind(model, CK_STRUCTURAL), "there is no spring"},
-        {"springs.shear", springs->shear, !ck_model_spring_of_kind(model, CK_SHEAR),
-         "only a cloth of two rows and columns has diagonals; add bars to a network"},
-        {"springs.bend", springs->bend, !ck_model_spring_of_kind(model, CK_BEND),
-         "only three particles in a row of a cloth or rope bend; add bars to a network"},
-        {"springs.damping", springs->damping, !model->spring_count, "there is no spring"},
-        {"springs.prestretch", springs->prestretch, !model->spring_count, "there is no spring"},
+        {"springs.shear", springs->shear, model->body != CK_CLOTH,
+         "only a cloth has diagonals; add bars to a network, or leave it out"},
+        {"springs.bend", springs->bend, model->body == CK_NETWORK,
+         "only a cloth and a rope bend; add bars to a network, or leave it out"},
+        {"springs.damping", springs->damping, is_none, "there is no spring; give a stiffness, or leave it out"},
+        {"springs.prestretch", springs->prestretch, is_none, "there is no spring; give a stiffness, or leave it out"},
     };
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
         if (rules[i].value > 0 && rules[i].is_idle)
-            return ck_scene_fail(scene, rules[i].path, error, "%s has nothing to act on: %s; leave it out",
-                                 rules[i].path, rules[i].why);
+            return ck_scene_fail(scene, rules[i].path, error, "%s has nothing to act on: %s", rules[i].path,
+                                 rules[i].why);
     return CK_OK;
 }
 
@@ -265,6 +257,7 @@ void ck_model_free(ck_Model *model) {
     free(model->velocity);
     free(model->mass);
     free(model->pinned);
+    free(model->released);
     free(model->truth);
     free(model->name);
     *model = (ck_Model){0};
@@ -279,9 +272,7 @@ void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor)
 }
 
 bool ck_model_is_held(const ck_Model *model, int particle) {
-    if (!model->pinned[particle]) return false;
-    return !is_released_before(model, particle,
-                               model->release_count ? model->releases[model->release_count - 1].particle_count : 0);
+    return model->pinned[particle] && !model->released[particle];
 }
 
 double ck_model_inverse_mass(const ck_Model *model, int particle) {

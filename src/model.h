@@ -71,6 +71,7 @@ typedef struct ck_Model {
     double *velocity; // [3*n] m/s at the start, 0 where pinned
     double *mass;     // [n] kg
     bool *pinned;     // [n] at the start
+    bool *released;   // [n] at some time
     int pin_count;
     ck_Spring *springs;
     int spring_count;

@@ -26,8 +26,9 @@ static ck_Status allocate(ck_Model *model, const ck_Scene *scene, const char *bo
     model->velocity = calloc(3 * count, sizeof(double));
     model->mass = calloc(count, sizeof(double));
     model->pinned = calloc(count, sizeof(bool));
+    model->released = calloc(count, sizeof(bool));
     model->springs = calloc((size_t)springs + 1, sizeof(ck_Spring));
-    bool whole = model->position && model->velocity && model->mass && model->pinned && model->springs;
+    bool whole = model->position && model->velocity && model->mass && model->pinned && model->released && model->springs;
     return whole ? CK_OK : CK_NO_MEMORY;
 }
 

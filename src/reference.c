@@ -85,9 +85,10 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
     memcpy(y + half, model->velocity, half * sizeof(double));
     if (nudge > 0) nudge_start(model, y, nudge, seed);
     for (int frame = 0; frame <= model->frame_count && !status; frame++) {
-        status = ck_child_check(error);
         if (frame) let_go(&now, frame - 1);
-        for (int i = 0; frame && i < substeps; i++) runge_kutta(&now, model->step / substeps, y, k, stage);
+        for (int i = 0; frame && i < substeps && !ck_child_interrupted; i++)
+            runge_kutta(&now, model->step / substeps, y, k, stage);
+        status = ck_child_check(error);
         bool finite = true;
         for (size_t j = 0; j < whole; j++) finite &= isfinite(y[j]) != 0;
         if (!finite) break;
