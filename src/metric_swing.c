@@ -155,28 +155,39 @@ static double passing_time(const double *swing, int frames, const Extreme *extre
     return find_change(&curve, fmax(from, frame - 1), fmin(to, frame), false, rest);
 }
 
-// The mean time between passes of one direction, of both directions together; NaN with fewer than three passes. rests
-// is scratch, [count].
-static double mean_period(const double *swing, int frames, const Extreme *extremes, int count, double *rests,
+// A period, and by how much passes of one direction differ in it from those of the other: what has a period has none
+// of that.
+typedef struct Period {
+    double mean, scatter;
+} Period;
+
+// The mean time between passes of one direction, of both directions together, in frames; NaN with fewer than three
+// passes. rests is scratch, [count].
+static Period mean_period(const double *swing, int frames, const Extreme *extremes, int count, double *rests,
                           int points) {
-    if (count < 4) return NAN;
-    double rest = place_of_rest(extremes, count, rests), before[2] = {NAN, NAN}, span = 0;
-    int periods = 0;
+    if (count < 4) return (Period){NAN, 0};
+    double rest = place_of_rest(extremes, count, rests), before[2] = {NAN, NAN}, span[2] = {0};
+    int periods[2] = {0};
     for (int i = 0; i + 1 < count; i++) {
         double time = passing_time(swing, frames, extremes, i, rest, points);
         if (isnan(time)) before[0] = before[1] = NAN;
-        if (!isnan(before[i % 2])) span += time - before[i % 2], periods++;
+        if (!isnan(before[i % 2])) span[i % 2] += time - before[i % 2], periods[i % 2]++;
         before[i % 2] = time;
     }
-    return periods ? span / periods : NAN;
+    if (!(periods[0] + periods[1])) return (Period){NAN, 0};
+    bool has_both = periods[0] && periods[1];
+    return (Period){(span[0] + span[1]) / (periods[0] + periods[1]),
+                    has_both ? 0.5 * fabs(span[0] / periods[0] - span[1] / periods[1]) : 0};
 }
 
-static double period_with(const ck_Model *model, const ck_Trajectory *trajectory, int points) {
+// In seconds.
+static Period period_with(const ck_Model *model, const ck_Trajectory *trajectory, int points) {
     int frames = trajectory->frame_count;
     double *swing = frames > 3 && is_held_anywhere(model) ? read_swing(model, trajectory) : NULL;
     Extreme *extremes = swing ? malloc((size_t)frames * sizeof *extremes) : NULL;
     double *rests = extremes ? malloc((size_t)frames * sizeof *rests) : NULL;
-    double low = INFINITY, high = -INFINITY, period = NAN;
+    double low = INFINITY, high = -INFINITY;
+    Period period = {NAN, 0};
     for (int frame = 0; frame < frames && rests; frame++) {
         low = fmin(low, swing[frame]);
         high = fmax(high, swing[frame]);
@@ -185,7 +196,9 @@ static double period_with(const ck_Model *model, const ck_Trajectory *trajectory
     bool starts_at_rest = !(model->terms & (CK_TERM_VELOCITY | CK_TERM_RELEASE));
     if (rests) {
         int count = find_extremes(swing, frames, least, starts_at_rest, points, extremes);
-        period = mean_period(swing, frames, extremes, count, rests, points) * trajectory->step;
+        period = mean_period(swing, frames, extremes, count, rests, points);
+        period.mean *= trajectory->step;
+        period.scatter *= trajectory->step;
     }
     free(rests);
     free(extremes);
@@ -195,9 +208,10 @@ static double period_with(const ck_Model *model, const ck_Trajectory *trajectory
 
 double ck_metric_period_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
-    return period_with(model, trajectory, MOST_POINTS);
+    return period_with(model, trajectory, MOST_POINTS).mean;
 }
 
 double ck_metric_period_unsure(const ck_Model *model, const ck_Trajectory *trajectory) {
-    return fabs(period_with(model, trajectory, MOST_POINTS) - period_with(model, trajectory, MOST_POINTS - 2));
+    Period period = period_with(model, trajectory, MOST_POINTS);
+    return fabs(period.mean - period_with(model, trajectory, MOST_POINTS - 2).mean) + period.scatter;
 }

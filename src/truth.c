@@ -217,7 +217,9 @@ double ck_truth_uncertainty(const ck_Truth *truth, const ck_Model *model, const 
         if (!metric->at && truth->reference.is_static) continue;
         if (is_ensemble && metric->to_horizon && i > 1) continue;
         double other = ck_metric_value(metric, model, &truth->paths[i], &truth->reference);
-        if (!isnan(other)) spread = fmax(spread, (is_ensemble && !metric->to_horizon ? 2 : 1) * fabs(other - value));
+        if (isnan(other)) continue;
+        double reading = metric->unsure ? metric->unsure(model, &truth->paths[i]) : 0;
+        spread = fmax(spread, (is_ensemble && !metric->to_horizon ? 2 : 1) * fabs(other - value) + reading);
     }
     return spread;
 }

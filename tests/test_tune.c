@@ -107,7 +107,7 @@ static void test_program(void **state) {
         {"rope_hanging --engine bullet-pbd --error 0.01", "rope_hanging,bullet-pbd,best,2,1,", 240},
         {"rope_heavy_end --engine native-xpbd --error 0.05", "rope_heavy_end,native-xpbd,best,", 2400},
         {"rope_heavy_end --engine native-xpbd --error 0.005", "rope_heavy_end,native-xpbd,best,", 4320},
-        {"tests/cases/soft_is_no_blowup.yaml --engine bullet-pbd --error 0.1", "stiff_rope_60hz,bullet-pbd,best,1,1,",
+        {"tests/cases/soft_is_no_blowup.yaml --engine bullet-pbd --error 0.1", "soft_is_no_blowup,bullet-pbd,best,1,1,",
          120},
     };
     for (size_t i = 0; i < sizeof goals / sizeof *goals; i++) {
