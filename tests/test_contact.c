@@ -370,6 +370,32 @@ static void test_costs_nothing(void **state) {
     assert_null(contact);
 }
 
+// A coefficient that explains a straight slide says nothing of one along a curve: there is none of it then.
+static void test_friction_is_straight(void **state) {
+    (void)state;
+    static const char text[] =
+        "name: slide\nnetwork: {nodes: [{at: [0, %g, 0], mass: 1}], bars: []}\nvelocity: [1, 0, 0]\n"
+        "gravity: [0, -9.81, 0]\ncolliders: [%s]\ntime: {duration: 0.3, step: 0.005}\n";
+    for (int is_ball = 0; is_ball < 2; is_ball++) {
+        char scene[500];
+        snprintf(scene, sizeof scene, text, is_ball ? 1.0 : 0.0,
+                 is_ball ? "{sphere: {center: [0, 0, 0], radius: 1, friction: 0.4}}"
+                         : "{plane: {point: [0, 0, 0], normal: [0, 1, 0], friction: 0.4}}");
+        ck_Comparison comparison;
+        ck_Trajectory trajectory;
+        fixture_load(&comparison, scene);
+        fixture_run(&trajectory, &comparison.model, ck_engine_find("native-verlet"), NULL, NULL);
+        double friction =
+            ck_metric_value(ck_metric_find("friction"), &comparison.model, &trajectory, &comparison.truth.reference);
+        if (is_ball)
+            assert_true(isnan(friction));
+        else
+            assert_near("friction of a straight slide", friction, 0.4, 0.01);
+        ck_trajectory_free(&trajectory);
+        ck_comparison_free(&comparison);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hit),
@@ -385,6 +411,7 @@ int main(void) {
         cmocka_unit_test(test_cloth_on_ball),
         cmocka_unit_test(test_release),
         cmocka_unit_test(test_costs_nothing),
+        cmocka_unit_test(test_friction_is_straight),
         cmocka_unit_test(test_groove),
         cmocka_unit_test(test_passing_by),
         cmocka_unit_test(test_many_colliders),

@@ -146,6 +146,14 @@ static const struct {
      ":5:25:", "unknown key relaxation in settings.bullet-pbd; known here: substeps, iterations, klst, reordered"},
     {"a setting of an engine without any", ROPE TIME "settings: {still: {substeps: 2}}\n",
      ":5:20:", "known here: none"},
+    {"rigid bars in equilibrium",
+     "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\nsprings: {rigid: true}\npins: [first]\ntruth: "
+     "equilibrium\n" TIME,
+     ":5:8:", "rigid bars have no energy to be least; for them there are vertical_chain"},
+    {"rigid bars on a trajectory",
+     "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\nsprings: {rigid: true}\npins: [first]\ntruth: "
+     "trajectory\n" TIME,
+     ":5:8:", "its integrator has no rigid bars"},
     {"two clocks", ROPE "time: {duration: 1, step: 0.1, fps: 10}\n", ":4:32:", "both step and fps"},
     {"no clock", ROPE "time: {duration: 1}\n", ":4:7:", "time has none of step and fps"},
     {"60 Hz in few digits", ROPE "time: {duration: 6, step: 0.0166667}\n",

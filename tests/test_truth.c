@@ -221,6 +221,55 @@ static void test_horizon(void **state) {
     }
 }
 
+// Beyond the horizon of a path nobody knows where the body is. What is still said of it there holds other paths, of
+// nudges that the truth has not seen: nine in ten of them, as an ensemble of eight can promise.
+static void test_ensemble(void **state) {
+    (void)state;
+    static const char *const names[] = {"sag", "stretch_max", "stretch_rms"};
+    int tries = 0, outside = 0;
+    for (int noise = 1; noise <= 4; noise++) {
+        char scene[500];
+        snprintf(scene, sizeof scene,
+                 "name: wild\nrope: {particles: 12, spacing: 0.1, mass: 1, along: [1, 0.3, 0]}\nsprings: "
+                 "{stiffness: 1000}\npins: [first]\nnoise: {amplitude: 0.01, seed: %d}\n"
+                 "gravity: [0, -9.81, 0]\ntime: {duration: 4, step: 0.02}\ntruth: trajectory\n",
+                 noise);
+        ck_Comparison comparison;
+        fixture_load(&comparison, scene);
+        const ck_Model *model = &comparison.model;
+        assert_int_equal(ck_truth_create(&comparison.truth, model, NULL, NULL), CK_OK);
+        assert_true(comparison.truth.reference.horizon < model->frame_count);
+        for (uint64_t seed = 100; seed < 106; seed++) {
+            ck_Trajectory path;
+            assert_int_equal(ck_reference_integrate(&path, model, 200, 1e-9 * model->size, seed, NULL), CK_OK);
+            for (int i = 0; i < 3; i++, tries++) {
+                const ck_Metric *metric = ck_metric_find(names[i]);
+                double off = ck_metric_value(metric, model, &path, &comparison.truth.reference) -
+                             ck_metric_truth(metric, model, &comparison.truth.reference);
+                outside += !(fabs(off) <= ck_truth_uncertainty(&comparison.truth, model, metric));
+            }
+            ck_trajectory_free(&path);
+        }
+        ck_comparison_free(&comparison);
+    }
+    print_message("%d of %d are outside\n", outside, tries);
+    assert_true(tries == 72 && outside <= tries / 10);
+}
+
+// Bars exactly as long as what they span have one place, and it is known.
+static void test_taut_bars(void **state) {
+    (void)state;
+    ck_Comparison comparison;
+    fixture_load(&comparison, "name: taut\nrope: {particles: 11, spacing: 0.1, mass: 1, along: [1, 0, 0]}\nsprings: "
+                              "{rigid: true}\npins: [first, last]\ngravity: [0, -9.81, 0]\n"
+                              "time: {duration: 1, step: 0.02}\ntruth: catenary\n");
+    const ck_Model *model = &comparison.model;
+    assert_int_equal(ck_truth_create(&comparison.truth, model, NULL, NULL), CK_OK);
+    assert_near("a taut catenary", apart(model, model->position, comparison.truth.paths[0].data), 0, 1e-15);
+    assert_true(ck_truth_uncertainty(&comparison.truth, model, ck_metric_find("position_rms")) < 1e-7);
+    ck_comparison_free(&comparison);
+}
+
 // A truth is solved once; a cache that is damaged anywhere is not believed.
 static void test_cache(void **state) {
     (void)state;
@@ -404,6 +453,8 @@ int main(void) {
         cmocka_unit_test(test_pendulum),
         cmocka_unit_test(test_reference_order),
         cmocka_unit_test(test_horizon),
+        cmocka_unit_test(test_ensemble),
+        cmocka_unit_test(test_taut_bars),
         cmocka_unit_test(test_cache),
         cmocka_unit_test(test_saddle),
         cmocka_unit_test(test_shipped_equilibria),
