@@ -1,0 +1,398 @@
+// ODE: particles are bodies, springs are double ball joints whose softness (ERP, CFM) is the spring's k and c.
+#include "engine.h"
+#include "ode_contact.h"
+#include "scaled_model.h"
+#include "shape.h"
+#include "time_scale.h"
+#include "vector.h"
+
+#include <ode/ode.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Rows that dWorldStep, whose cost grows with their cube, is given at most: 1500 take about 0.1 s a step.
+#define DIRECT_MAX_ROWS 1500
+// Beyond this speed, in sizes of the body per second, ODE's own assertions would abort the process soon.
+#define MAX_SPEED 1e6
+
+typedef struct OdeWorld {
+    ck_ScaledModel scaled;
+    const ck_Model *model; // of scaled
+    dWorldID world;
+    dJointGroupID joints;
+    dBodyID *bodies; // [particle_count]
+    ck_OdeContacts *contacts;
+    double dt; // s, one substep
+    uint32_t substeps;
+    bool quick;
+    ck_Settings used;
+} OdeWorld;
+
+// Its own settings, by their numbers.
+enum { OWN_ERP, OWN_CFM, OWN_COUNT };
+
+// dInitODE2 and dCloseODE bracket all worlds of the process.
+static int world_count;
+
+static const char *version(void) {
+    return dGetConfiguration() ? CK_ODE_VERSION " double" : "";
+}
+
+// A spring as ODE knows it: the joint pushes with k(L − l) − (h·k + c)·l̇ along the direction at the start of the step.
+static double error_reduction(const ck_Spring *spring, double h, const ck_Settings *used) {
+    if (ck_settings_has(used, CK_OWN + OWN_ERP)) return used->own[OWN_ERP];
+    return isinf(spring->stiffness) ? 0.8 : h * spring->stiffness / (h * spring->stiffness + spring->damping);
+}
+
+// A rigid bar keeps a little softness, as a share of what its ends' masses make of a force: dWorldStep aborts on
+// redundant constraints without.
+#define BAR_SOFTNESS 2.5e-10
+#define CONTACT_SOFTNESS 5e-13
+
+// In the model's units; kg: the unit of mass of a scaled model.
+static double constraint_force_mixing(const ck_Model *model, const ck_Spring *spring, double h, const ck_Settings *used,
+                                      double kg) {
+    if (ck_settings_has(used, CK_OWN + OWN_CFM)) return used->own[OWN_CFM] * kg;
+    double weight = ck_model_inverse_mass(model, spring->a) + ck_model_inverse_mass(model, spring->b);
+    return isinf(spring->stiffness) ? BAR_SOFTNESS * weight : 1 / (h * spring->stiffness + spring->damping);
+}
+
+// With contact that may be on every particle, of three rows each with friction.
+static int row_count(const ck_Model *model) {
+    int rows = 0;
+    for (int i = 0; i < model->collider_count; i++)
+        rows += model->particle_count * (model->colliders[i].friction > 0 ? 3 : 1);
+    for (int i = 0; i < model->spring_count; i++)
+        rows += !(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]);
+    return rows;
+}
+
+static void translate_springs(const ck_Model *model, double h, const ck_Settings *used, ck_Ledger *ledger,
+                              ck_Match match) {
+    bool has_cfm = ck_settings_has(used, CK_OWN + OWN_CFM), has_erp = ck_settings_has(used, CK_OWN + OWN_ERP);
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (!spring) continue;
+        bool rigid = isinf(spring->stiffness);
+        ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamCFM",
+                                             constraint_force_mixing(model, spring, h, used, 1),
+                                             has_cfm ? "as set"
+                                             : rigid ? "2.5e-10*(wa + wb): softest that is safe"
+                                                     : "1/(h*k + c)",
+                                             rigid || has_cfm ? CK_APPROXIMATE : match});
+        ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamERP",
+                                             error_reduction(spring, h, used),
+                                             has_erp ? "as set"
+                                             : rigid ? "0.8 of the error per step"
+                                                     : "h*k/(h*k + c)",
+                                             rigid || has_erp ? CK_APPROXIMATE : match});
+    }
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "dParamERP, dParamCFM",
+                                     model->springs[0].damping, "in both of the above", match});
+}
+
+static void translate_contact(const ck_Model *model, ck_Ledger *ledger) {
+    ck_ledger_add_colliders(
+        ledger, model,
+        (ck_LedgerRow){"restitution", 0, "1", "motionN", 0,
+                       "e*v_n at the surface, in the step after the impact; rests below 2*g*h", CK_APPROXIMATE},
+        (ck_LedgerRow){"friction", 0, "1", "mu", 0, "dContactApprox1, fdir1 along the slip: a cone", CK_APPROXIMATE});
+}
+
+// Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, which
+// is the limit itself for a rope, so that half of it is taken there; at most 1/120 s, 1/240 s where there is contact,
+// and a tenth of drag's time. For QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9 of a spring's
+// error; ≤ 2 where there is contact, with whose friction it converges more slowly: a cloth on a ball shakes at 2.2 and
+// lies still at 1.5.
+static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
+                      bool quick) {
+    double across = (ck_shape_is_chain(model) ? 0.5 : 1) * ck_stability_transverse_time(model);
+    double limit =
+        fmin(fmin(model->collider_count ? 1.0 / 240 : 1.0 / 120, across), ck_stability_drag_time(model, 0.1));
+    double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
+    if (quick && rate > 0) limit = fmin(limit, sqrt((model->collider_count ? 4 : 10) / rate));
+    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
+    for (int i = 0; i < OWN_COUNT; i++)
+        if (ck_settings_has(wanted, CK_OWN + i)) ck_settings_set(used, CK_OWN + i, wanted->own[i]);
+    if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
+    if (quick) used->relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1.3;
+    double h = model->step / used->substeps;
+    ck_scaled_model_ledger(ledger, model);
+    ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "h", h, "step / substeps", CK_EXACT});
+    ck_ledger_add_masses(
+        ledger, model,
+        (ck_LedgerRow){
+            .unit = "kg", .native_parameter = "dMass", .formula = "m; kinematic where pinned", .match = CK_EXACT},
+        false);
+    if (model->terms & CK_TERM_GRAVITY)
+        ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "dWorldSetGravity",
+                                             ck_length(model->gravity), "g", CK_EXACT});
+    if (model->terms & CK_TERM_FORCE)
+        ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "dBodyAddForce",
+                                             ck_length(model->force), "F before each step", CK_EXACT});
+    if (model->terms & CK_TERM_DRAG)
+        ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "dBodySetLinearDamping", model->drag * h,
+                                             "h*drag, threshold 0: first order", CK_APPROXIMATE});
+    // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
+    translate_springs(model, h, used, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
+    translate_contact(model, ledger);
+}
+
+static void destroy(void *state) {
+    OdeWorld *ode = state;
+    ck_ode_contacts_destroy(ode->contacts);
+    ck_scaled_model_free(&ode->scaled);
+    if (ode->joints) dJointGroupDestroy(ode->joints);
+    if (ode->world) dWorldDestroy(ode->world);
+    if (--world_count == 0) dCloseODE();
+    free(ode->bodies);
+    free(ode);
+}
+
+static void add_bodies(OdeWorld *ode) {
+    const ck_Model *model = ode->model;
+    for (int i = 0; i < model->particle_count; i++) {
+        const double *position = model->position + 3 * i, *velocity = model->velocity + 3 * i;
+        dBodyID body = dBodyCreate(ode->world);
+        ode->bodies[i] = body;
+        dBodySetPosition(body, position[0], position[1], position[2]);
+        // springs pull at the centre, so that nothing turns and any inertia does
+        dMass mass;
+        dMassSetSphereTotal(&mass, model->mass[i], 0.5 * model->spacing);
+        dBodySetMass(body, &mass);
+        dBodySetGyroscopicMode(body, 0);
+        dBodySetLinearVel(body, velocity[0], velocity[1], velocity[2]);
+        if (model->pinned[i]) dBodySetKinematic(body);
+        dBodySetLinearDampingThreshold(body, 0);
+        dBodySetLinearDamping(body, model->pinned[i] ? 0 : model->drag * ode->dt);
+    }
+}
+
+static void add_joint(OdeWorld *ode, const ck_Spring *spring) {
+    dJointID joint = dJointCreateDBall(ode->world, ode->joints);
+    dJointAttach(joint, ode->bodies[spring->a], ode->bodies[spring->b]);
+    // after attaching, which takes the current length for the rest length
+    dJointSetDBallDistance(joint, spring->rest);
+    dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt, &ode->used));
+    dJointSetDBallParam(joint, dParamCFM,
+                        constraint_force_mixing(ode->model, spring, ode->dt, &ode->used, ode->scaled.mass));
+}
+
+// Springs between two pins do nothing, until one of them is let go.
+static void release(void *state, int particle) {
+    OdeWorld *ode = state;
+    dBodyID body = ode->bodies[particle];
+    for (int i = 0; i < ode->model->spring_count; i++) {
+        const ck_Spring *spring = &ode->model->springs[i];
+        if (spring->a != particle && spring->b != particle) continue;
+        if (dBodyIsKinematic(ode->bodies[spring->a]) && dBodyIsKinematic(ode->bodies[spring->b]))
+            add_joint(ode, spring);
+    }
+    dBodySetDynamic(body);
+    dBodySetLinearVel(body, 0, 0, 0);
+    dBodySetLinearDamping(body, ode->model->drag * ode->dt);
+}
+
+static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *used, bool quick, ck_Error *error) {
+    OdeWorld *ode = calloc(1, sizeof *ode);
+    if (!ode) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *ode = (OdeWorld){.dt = scene->step / used->substeps, .substeps = used->substeps, .quick = quick, .used = *used};
+    ck_Status scaled = ck_scaled_model_create(&ode->scaled, scene);
+    const ck_Model *model = ode->model = &ode->scaled.model;
+    if (world_count++ == 0) dInitODE2(0);
+    ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
+    if (ode->bodies && !scaled) ode->world = dWorldCreate();
+    if (ode->world) ode->joints = dJointGroupCreate(0);
+    ck_Status status = ode->joints ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
+    if (status) {
+        destroy(ode);
+        return status;
+    }
+    dWorldSetGravity(ode->world, model->gravity[0], model->gravity[1], model->gravity[2]);
+    dWorldSetAutoDisableFlag(ode->world, 0);
+    // that of contacts, whose default of 1e-10 is what this is for particles of 5 g
+    dWorldSetCFM(ode->world, CONTACT_SOFTNESS * ck_stability_lightness(model));
+    if (quick) dWorldSetQuickStepNumIterations(ode->world, (int)used->iterations);
+    if (quick) dWorldSetQuickStepW(ode->world, used->relaxation);
+    add_bodies(ode);
+    for (int i = 0; i < model->spring_count; i++)
+        if (!(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]))
+            add_joint(ode, &model->springs[i]);
+    *state = ode;
+    return CK_OK;
+}
+
+static ck_Status create_quick(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                              ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger, true);
+    return build(state, model, used, true, error);
+}
+
+static ck_Status create_direct(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                               ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger, false);
+    int rows = row_count(model);
+    if (rows > DIRECT_MAX_ROWS)
+        return ck_fail(
+            error, CK_REFUSED,
+            "dWorldStep's cost grows with the cube of its rows: this scene has %d, the most taken is %d; use ode-quick",
+            rows, DIRECT_MAX_ROWS);
+    return build(state, model, used, false, error);
+}
+
+// NaN or a runaway speed would abort the process inside ODE
+static bool is_safe(const OdeWorld *ode) {
+    for (int i = 0; i < ode->model->particle_count; i++) {
+        const dReal *position = dBodyGetPosition(ode->bodies[i]), *velocity = dBodyGetLinearVel(ode->bodies[i]);
+        if (!(ck_length(velocity) < MAX_SPEED * ode->model->size) || !isfinite(ck_dot(position, position)))
+            return false;
+    }
+    return true;
+}
+
+static ck_StepResult step(void *state) {
+    OdeWorld *ode = state;
+    const double *force = ode->model->force;
+    if (ode->contacts) memset(ode->contacts->impulse, 0, sizeof ode->contacts->impulse);
+    for (uint32_t i = 0; i < ode->substeps; i++) {
+        if (!is_safe(ode)) return CK_STEP_DIVERGED;
+        for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
+            if (!dBodyIsKinematic(ode->bodies[j])) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
+        if (ode->contacts) ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies);
+        // QuickStep shuffles its rows from a seed that is global to the process
+        dRandSetSeed(1);
+        int done = ode->quick ? dWorldQuickStep(ode->world, ode->dt) : dWorldStep(ode->world, ode->dt);
+        if (!done) return CK_STEP_NO_MEMORY;
+        if (ode->contacts) ck_ode_contacts_remove(ode->contacts);
+    }
+    return is_safe(ode) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+static void read_state(const void *state, double *position, double *velocity) {
+    const OdeWorld *ode = state;
+    for (int i = 0; i < ode->model->particle_count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            position[3 * i + axis] = ode->scaled.length * dBodyGetPosition(ode->bodies[i])[axis];
+            velocity[3 * i + axis] = ode->scaled.length * dBodyGetLinearVel(ode->bodies[i])[axis];
+        }
+}
+
+static void read_contact(const void *state, double *force) {
+    const OdeWorld *ode = state;
+    double unit = ode->scaled.mass * ode->scaled.length;
+    for (int axis = 0; axis < 3; axis++)
+        force[axis] = ode->contacts ? unit * ode->contacts->impulse[axis] / ode->model->step : 0;
+}
+
+#define ODE_TERMS                                                                                                      \
+    (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
+     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
+
+static const ck_Setting quick_settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "tension across springs, stiffness, drag, at most 1/120 s",
+     .help = "steps a frame"},
+    {.name = "iterations",
+     .slot = CK_ITERATIONS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "50",
+     .help = "dWorldSetQuickStepNumIterations: sweeps over rows a substep"},
+    {.name = "sor",
+     .slot = CK_RELAXATION,
+     .least = 0.01,
+     .most = 2,
+     .unit = "1",
+     .rule = "1.3",
+     .help = "dWorldSetQuickStepW: over-relaxation of a sweep",
+     .also = "relaxation"},
+    {.name = "erp",
+     .slot = CK_OWN + OWN_ERP,
+     .least = 0,
+     .most = 1,
+     .unit = "1",
+     .rule = "h*k/(h*k + c)",
+     .help = "dParamERP of every spring's joint",
+     .leaves_theory = true},
+    {.name = "cfm",
+     .slot = CK_OWN + OWN_CFM,
+     .least = 0,
+     .most = 1e6,
+     .unit = "1/kg",
+     .rule = "1/(h*k + c)",
+     .help = "dParamCFM of every spring's joint",
+     .leaves_theory = true},
+    {0},
+};
+
+static const ck_Setting direct_settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "tension across springs, drag, at most 1/120 s",
+     .help = "steps a frame"},
+    {.name = "erp",
+     .slot = CK_OWN + OWN_ERP,
+     .least = 0,
+     .most = 1,
+     .unit = "1",
+     .rule = "h*k/(h*k + c)",
+     .help = "dParamERP of every spring's joint",
+     .leaves_theory = true},
+    {.name = "cfm",
+     .slot = CK_OWN + OWN_CFM,
+     .least = 0,
+     .most = 1e6,
+     .unit = "1/kg",
+     .rule = "1/(h*k + c)",
+     .help = "dParamCFM of every spring's joint",
+     .leaves_theory = true},
+    {0},
+};
+
+const ck_Engine ck_ode_quick = {
+    .name = "ode-quick",
+    .about = "dWorldQuickStep: springs as soft constraints, projected Gauss-Seidel",
+    .family = "ODE",
+    .version = version,
+    .method = CK_METHOD_SEMI_IMPLICIT_ODE,
+    .terms = ODE_TERMS,
+    .settings = quick_settings,
+    .order = 1,
+    .create = create_quick,
+    .step = step,
+    .read = read_state,
+    .release = release,
+    .contact = read_contact,
+    .destroy = destroy,
+};
+
+const ck_Engine ck_ode_direct = {
+    .name = "ode-direct",
+    .about = "dWorldStep: springs as soft constraints, solved exactly",
+    .family = "ODE",
+    .version = version,
+    .method = CK_METHOD_SEMI_IMPLICIT_ODE,
+    .terms = ODE_TERMS,
+    .settings = direct_settings,
+    .order = 1,
+    .create = create_direct,
+    .step = step,
+    .read = read_state,
+    .release = release,
+    .contact = read_contact,
+    .destroy = destroy,
+};

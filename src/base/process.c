@@ -1,0 +1,140 @@
+#include "process.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+volatile sig_atomic_t ck_child_interrupted;
+
+ck_Status ck_child_check(ck_Error *error) {
+    return ck_child_interrupted ? ck_fail(error, CK_IO, "interrupted; no CSV was written") : CK_OK;
+}
+
+ck_Limits ck_limits_default(void) {
+    return (ck_Limits){.seconds = 900, .memory_bytes = (size_t)4 << 30};
+}
+
+void *ck_shared_allocate(size_t bytes) {
+    void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    return memory == MAP_FAILED ? NULL : memory;
+}
+
+void ck_shared_free(void *memory, size_t bytes) {
+    if (memory) munmap(memory, bytes);
+}
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static size_t resident_bytes(pid_t child) {
+    char path[40];
+    snprintf(path, sizeof path, "/proc/%d/statm", child);
+    FILE *file = fopen(path, "r");
+    if (!file) return 0;
+    unsigned long total, resident;
+    if (fscanf(file, "%lu %lu", &total, &resident) != 2) resident = 0;
+    fclose(file);
+    return resident * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+static _Noreturn void be_child(void (*work)(void *), void *context, int output, int alive) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL); // an interrupted comparison leaves no solver running
+    prctl(PR_SET_NAME, "clothcheck-run");
+    dup2(output, STDOUT_FILENO);
+    dup2(output, STDERR_FILENO);
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+    // a crash is a result here, not worth a core file
+    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+    work(context);
+    fflush(NULL);
+    close(alive);
+    _exit(0);
+}
+
+// Waits until the child closes its end of the pipe, by exit or death, or passes a limit.
+static ck_ChildEnd watch(pid_t child, int alive, const ck_Limits *limits) {
+    double end = now() + limits->seconds;
+    for (;;) {
+        struct pollfd ready = {.fd = alive, .events = POLLIN};
+        if (poll(&ready, 1, 20) > 0) return CK_CHILD_DONE;
+        if (ck_child_interrupted) return CK_CHILD_ABORTED;
+        if (limits->memory_bytes && resident_bytes(child) > limits->memory_bytes) return CK_CHILD_NO_MEMORY;
+        if (now() > end) return CK_CHILD_TIMED_OUT;
+    }
+}
+
+static void read_last_line(char *line, size_t size, int output) {
+    char text[1024];
+    off_t length = lseek(output, 0, SEEK_END);
+    off_t start = length > (off_t)sizeof text - 1 ? length - (off_t)sizeof text + 1 : 0;
+    ssize_t got = pread(output, text, sizeof text - 1, start);
+    while (got > 0 && (text[got - 1] == '\n' || text[got - 1] == ' ')) got--;
+    text[got > 0 ? got : 0] = 0;
+    char *last = strrchr(text, '\n');
+    snprintf(line, size, "%.*s", (int)size - 1, last ? last + 1 : text);
+}
+
+static void describe(ck_ChildResult *result, int status, const ck_Limits *limits, int output) {
+    if (result->end == CK_CHILD_DONE && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+    char line[120];
+    read_last_line(line, sizeof line, output);
+    const char *colon = *line ? ": " : "";
+    if (result->end == CK_CHILD_TIMED_OUT)
+        snprintf(result->reason, sizeof result->reason, "still running after the limit of %g s", limits->seconds);
+    else if (result->end == CK_CHILD_NO_MEMORY)
+        snprintf(result->reason, sizeof result->reason, "took more than the limit of %zu MiB",
+                 limits->memory_bytes >> 20);
+    else if (WIFSIGNALED(status))
+        snprintf(result->reason, sizeof result->reason, "signal %d, %s%s%s", WTERMSIG(status),
+                 strsignal(WTERMSIG(status)), colon, line);
+    else
+        snprintf(result->reason, sizeof result->reason, "exit status %d%s%s", WEXITSTATUS(status), colon, line);
+    if (result->end == CK_CHILD_DONE) result->end = CK_CHILD_ABORTED;
+}
+
+ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *context, const ck_Limits *limits,
+                       ck_Error *error) {
+    *result = (ck_ChildResult){0};
+    int output = memfd_create("output", MFD_CLOEXEC), alive[2] = {-1, -1};
+    ck_Status status = CK_OK;
+    if (output < 0 || pipe(alive)) {
+        status = ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+        goto cleanup;
+    }
+    // else what is buffered here would be printed twice
+    fflush(NULL);
+    pid_t child = fork();
+    if (child < 0) {
+        status = ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+        goto cleanup;
+    }
+    if (child == 0) be_child(work, context, output, alive[1]);
+    close(alive[1]);
+    alive[1] = -1;
+    result->end = watch(child, alive[0], limits);
+    if (result->end != CK_CHILD_DONE) kill(child, SIGKILL);
+    int wait_status = 0;
+    struct rusage usage = {0};
+    while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
+    result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
+    describe(result, wait_status, limits, output);
+    if (!status) status = ck_child_check(error);
+cleanup:
+    if (output >= 0) close(output);
+    if (alive[0] >= 0) close(alive[0]);
+    if (alive[1] >= 0) close(alive[1]);
+    return status;
+}

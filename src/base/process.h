@@ -1,0 +1,45 @@
+// Work in a child process with limits, so that a crash, a hang or a flood of memory costs the caller nothing but a
+// result.
+#ifndef CK_PROCESS_H
+#define CK_PROCESS_H
+
+#include "status.h"
+
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct ck_Limits {
+    double seconds;      // of wall time
+    size_t memory_bytes; // of resident memory; 0: none
+    bool foresees;       // a run whose frames so far say that it will take half as long again ends at once
+} ck_Limits;
+
+// 15 minutes, 4 GiB.
+ck_Limits ck_limits_default(void);
+
+typedef enum ck_ChildEnd { CK_CHILD_DONE, CK_CHILD_ABORTED, CK_CHILD_TIMED_OUT, CK_CHILD_NO_MEMORY } ck_ChildEnd;
+
+typedef struct ck_ChildResult {
+    ck_ChildEnd end;
+    char reason[256];      // empty when done; else the signal or limit, and the last line the child printed
+    size_t peak_rss_bytes; // of the child, with what it inherited
+} ck_ChildResult;
+
+// Set by a signal handler: the current child is ended, and ck_child_run fails with CK_IO from then on.
+extern volatile sig_atomic_t ck_child_interrupted;
+
+// CK_IO with its message once a signal has come, else CK_OK: for long work in the parent.
+ck_Status ck_child_check(ck_Error *error);
+
+// Forks, runs work(context) in the child and waits for it. What the child prints does not reach the caller's streams.
+// Results travel through memory that context shares with the child.
+// Errors: CK_IO when no process can be started. How the child ended is a result, not an error.
+ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *context), void *context, const ck_Limits *limits,
+                       ck_Error *error);
+
+// Zeroed memory that a child's writes are seen in. NULL when there is none. Free with ck_shared_free.
+void *ck_shared_allocate(size_t bytes);
+void ck_shared_free(void *memory, size_t bytes);
+
+#endif

@@ -1,0 +1,109 @@
+// The command line: one table row and one file a command.
+#ifndef CK_COMMAND_H
+#define CK_COMMAND_H
+
+#include "comparison.h"
+
+#define CK_EXIT_OK 0
+#define CK_EXIT_FAILED 1 // a check failed
+#define CK_EXIT_USAGE 2  // wrong usage or input
+
+// What a command takes on its command line.
+typedef enum ck_ArgumentGroup {
+    CK_TAKES_OUT = 1,
+    CK_TAKES_RUNS = 2, // --engine, --set, --threads and the limits
+    CK_TAKES_TIMING = 4,
+    CK_TAKES_JOBS = 8,
+    CK_TAKES_SHARD = 16,
+    CK_TAKES_GOAL = 32,
+    CK_TAKES_ERROR = 64,
+    CK_TAKES_UPDATE = 128,
+    CK_TAKES_KEEPING = 256, // --append, --force
+    CK_TAKES_BENCH = 512
+} ck_ArgumentGroup;
+
+typedef struct ck_Command ck_Command;
+struct ck_Command {
+    const char *name, *arguments, *about;
+    const char *help; // what it does, in some lines
+    unsigned groups;  // of options
+    const char *out;  // where it writes to, where --out does not say; NULL: nowhere
+    double seconds;   // of wall time that a run may take, where --time-limit does not say
+    // argv[0] is the command's name. Returns the exit status.
+    int (*run)(const ck_Command *command, int argc, char **argv);
+};
+
+extern const ck_Command ck_command_list, ck_command_run, ck_command_compare, ck_command_check, ck_command_precision,
+    ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge, ck_command_report, ck_command_claims,
+    ck_command_bench;
+
+// What stands on a command line.
+typedef struct ck_Arguments {
+    ck_CompareOptions options;
+    const ck_Engine *engines[CK_COMPARISON_MAX_ENGINES];
+    ck_Override overrides[64];
+    const char *out; // directory; NULL: none
+    int jobs;        // worker processes of a study; 0: as many as suit it
+    int shard, shards;
+    bool runs_nothing;
+    bool appends, forces;  // into a directory that holds other results: keeps them, replaces them
+    int rounds, largest;   // of bench
+    char question[2048];   // what is asked, without the scene, where to and how fast; words between tabs
+    double error;          // a tolerance; NAN: none
+    const ck_Engine *like; // NULL: none
+    const char *varies[4]; // of --vary
+    int vary_count;
+    char *words[128]; // of a command without scenes
+    int word_count;
+    char *validate[16]; // paths, owned
+    int validate_count;
+    bool is_update;
+    char **scenes; // paths, owned with their texts
+    int scene_count;
+} ck_Arguments;
+
+// An option of a command as its help tells it.
+typedef struct ck_OptionText {
+    const char *name, *value; // as in --name VALUE; value NULL: it has none. name NULL: there is no more
+    char letter;              // -x; 0: none
+    const char *help;
+    char fallback[48]; // where it is not given; empty: nothing to say
+} ck_OptionText;
+
+// The options that a command takes, by their number.
+ck_OptionText ck_option_text(const ck_Command *command, int index);
+
+// The path of a scene: as it is, or for a bare name scenes/NAME.yaml, of this folder or of what came with the program.
+// Errors: CK_BAD_INPUT, CK_NO_MEMORY. Free *path.
+ck_Status ck_scene_path(char **path, const char *scene, ck_Error *error);
+
+// Reads options and scene arguments.
+// Errors: CK_BAD_INPUT, CK_NO_MEMORY. Free with ck_arguments_free in any case.
+ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv, ck_Error *error);
+// Errors: CK_BAD_INPUT, CK_NO_MEMORY.
+ck_Status ck_arguments_add_scene(ck_Arguments *arguments, const char *scene, ck_Error *error);
+// All scenes there are where none was given. Errors: CK_BAD_INPUT, CK_NO_MEMORY.
+ck_Status ck_arguments_all_scenes(ck_Arguments *arguments, ck_Error *error);
+void ck_arguments_free(ck_Arguments *arguments);
+
+// Print the manual page, and the completion of bash.
+void ck_manual_print(const ck_Command *const *commands, int count);
+void ck_completion_print(const ck_Command *const *commands, int count);
+
+// Prints what the options are, for --help.
+void ck_arguments_help(const ck_Command *command);
+
+// Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each while
+// its runs are in memory. Returns the exit status, having told of an error on stderr.
+int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Comparison *comparison));
+
+// Prints one line per engine: status, error and cost. With a header when first is true.
+void ck_print_summary(const ck_Comparison *comparison);
+
+// Asks for signals to end what runs, so that whole files or none are left.
+void ck_command_catch_signals(void);
+
+// Tells of an error on stderr and returns the exit status that goes with it.
+int ck_command_fail(ck_Status status, const ck_Error *error);
+
+#endif

@@ -1,0 +1,44 @@
+#include "bench.h"
+#include "command.h"
+#include "machine.h"
+#include "paths.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static void show_progress(const char *body, const char *engine) {
+    fprintf(stderr, "\r\033[K%s: %s", body, engine);
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Arguments arguments;
+    ck_Error error = {0};
+    ck_Csv csv = {0};
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    const char *out = arguments.out;
+    ck_BenchOptions options = {.rounds = arguments.rounds, .budget = 20, .largest = arguments.largest};
+    if (isatty(STDERR_FILENO)) options.progress = show_progress;
+    int failed = status ? 0 : ck_path_make(out);
+    if (failed) status = ck_fail(&error, CK_IO, "%s: %s", out, strerror(failed));
+    if (!status) status = ck_csv_open(&csv, out, &ck_layouts[CK_BENCH], &error);
+    if (!status) status = ck_bench_write(&csv, &options, &error);
+    if (options.progress) fprintf(stderr, "\r\033[K");
+    if (!status) status = ck_csv_close(&csv, &error);
+    if (!status) status = ck_machine_save(out, &error);
+    ck_csv_discard(&csv);
+    if (!status) printf("CSV: %s/bench.csv\n", out);
+    ck_arguments_free(&arguments);
+    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
+}
+
+const ck_Command ck_command_bench = {
+    .name = "bench",
+    .arguments = "",
+    .about = "how fast the engines are: per spring, per step, and as a cloth grows",
+    .help = "Times all engines, interleaved, on cloths of 20x20, 64x64 and 256x256 and a rope of 1000, and "
+            "native-verlet\nas a cloth grows; writes bench.csv into --out.",
+    .groups = CK_TAKES_OUT | CK_TAKES_BENCH,
+    .out = "out",
+    .run = run,
+};

@@ -1,0 +1,216 @@
+#include "check.h"
+#include "command.h"
+#include "paths.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// What a run in a check may take, s of CPU: the whole is to run often.
+#define SECONDS 1.5
+#define BASELINE_DIRECTORY "tests/baseline"
+#define BASELINE_NAME "metrics.csv"
+#define MOST_PRINTED 20
+
+typedef struct Work {
+    ck_Arguments arguments;
+    ck_Baseline baseline;
+    ck_Comparison *comparisons;
+    int comparison_count;
+    ck_Check check;
+    ck_JournalRow *rows;
+} Work;
+
+static bool has_row(const ck_Baseline *baseline, const char *scene, const char *engine) {
+    for (int i = 0; i < baseline->count; i++)
+        if (!strcmp(baseline->rows[i].scene, scene) && (!engine || !strcmp(baseline->rows[i].engine, engine)))
+            return true;
+    return false;
+}
+
+static ck_Status load_scenes(Work *work, ck_Error *error) {
+    const ck_Arguments *arguments = &work->arguments;
+    char *cache = ck_path_join(arguments->out, "truths");
+    work->comparisons = calloc((size_t)arguments->scene_count, sizeof *work->comparisons);
+    ck_Status status = cache && work->comparisons ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < arguments->scene_count && !status; i++) {
+        ck_Comparison *comparison = &work->comparisons[work->comparison_count];
+        status = ck_comparison_load(comparison, arguments->scenes[i], error);
+        // the baseline says which scenes are quick enough
+        if (!status && !arguments->is_update && !has_row(&work->baseline, comparison->model.name, NULL))
+            ck_comparison_free(comparison);
+        else
+            work->comparison_count++;
+    }
+    for (int i = 0; i < work->comparison_count && !status; i++)
+        status = ck_truth_create(&work->comparisons[i].truth, &work->comparisons[i].model, cache, error);
+    free(cache);
+    return status;
+}
+
+static ck_Status list_cases(Work *work, ck_Error *error) {
+    const ck_CompareOptions *options = &work->arguments.options;
+    ck_Check *check = &work->check;
+    check->options = options;
+    check->is_update = work->arguments.is_update;
+    check->cases = calloc((size_t)(work->comparison_count * options->engine_count) + 1, sizeof *check->cases);
+    if (!check->cases) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < work->comparison_count; i++)
+        for (int k = 0; k < options->engine_count; k++) {
+            const char *scene = work->comparisons[i].model.name;
+            if (check->is_update || has_row(&work->baseline, scene, options->engines[k]->name))
+                check->cases[check->case_count++] = (ck_CheckCase){&work->comparisons[i], options->engines[k]};
+        }
+    if (!check->case_count)
+        return ck_fail(error, CK_BAD_INPUT, "the baseline has nothing of these scenes and engines; --update adds it");
+    work->rows = calloc((size_t)check->case_count, sizeof *work->rows);
+    return work->rows ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+}
+
+static ck_Status run_cases(Work *work, ck_Error *error) {
+    const ck_Study study = ck_check_study(&work->check);
+    int jobs = work->arguments.jobs ? work->arguments.jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    // a check is of the code as it is now: nothing is taken from an older one
+    const ck_StudyOptions options = {work->arguments.out,   "check", jobs > 0 ? jobs : 1, 0, 0,
+                                     isatty(STDERR_FILENO), false};
+    ck_study_forget(&study, &options);
+    ck_Status status = ck_study_run(&study, &options, work->rows, error);
+    ck_study_forget(&study, &options);
+    return status;
+}
+
+static void print_deviation(const ck_Deviation *deviation) {
+    const ck_BaselineRow *was = deviation->row;
+    printf("  %-20s %-16s %-16s %16.9g  was %16.9g  within %8.2g%s%s\n", was->scene, was->engine,
+           *was->metric ? was->metric : "status", deviation->value, was->value, was->band,
+           strcmp(deviation->status, was->status) ? "  now " : "",
+           strcmp(deviation->status, was->status) ? deviation->status : "");
+}
+
+static int compare_excess(const void *a, const void *b) {
+    double x = ((const ck_Deviation *)a)->excess, y = ((const ck_Deviation *)b)->excess;
+    return (x < y) - (x > y);
+}
+
+// Prints the worst of all deviations; returns how many there are, negative without memory.
+static int print_worst(const Work *work, int most) {
+    ck_Deviation *all = calloc((size_t)work->baseline.count + 1, sizeof *all);
+    int count = 0;
+    if (!all) return -1;
+    for (int i = 0; i < work->check.case_count; i++)
+        count += ck_check_compare(&work->check.cases[i], &work->rows[i], &work->baseline, all + count);
+    qsort(all, (size_t)count, sizeof *all, compare_excess);
+    for (int i = 0; i < count && i < most; i++) print_deviation(&all[i]);
+    if (count > most) printf("  and %d more\n", count - most);
+    free(all);
+    return count;
+}
+
+static bool is_of(const ck_BaselineRow *row, const ck_CheckCase *one) {
+    return !strcmp(one->comparison->model.name, row->scene) && !strcmp(one->engine->name, row->engine);
+}
+
+// The case that a row of the baseline is of; negative: none was measured now.
+static int find_case(const ck_Check *check, const ck_BaselineRow *row) {
+    for (int i = 0; i < check->case_count; i++)
+        if (is_of(row, &check->cases[i])) return i;
+    return -1;
+}
+
+// Adds a case as it is now; false where it took too long. A busy machine drops no run that was quick enough before:
+// that stays as it was.
+static bool add_case(const Work *work, int index, bool is_known, ck_Csv *csv) {
+    const ck_CheckCase *one = &work->check.cases[index];
+    if (ck_check_add(one, &work->rows[index], is_known ? 2 * SECONDS : SECONDS, csv)) return true;
+    for (int i = 0; i < work->baseline.count; i++)
+        if (is_of(&work->baseline.rows[i], one)) ck_baseline_add(&work->baseline.rows[i], csv);
+    return false;
+}
+
+// In the order there was, so that what did not move is no change; what is new comes last.
+static void add_all(const Work *work, ck_Csv *csv) {
+    const ck_Check *check = &work->check;
+    const ck_BaselineRow *rows = work->baseline.rows;
+    int added = 0, kept = 0;
+    for (int i = 0; i < work->baseline.count; i++) {
+        const int index = find_case(check, &rows[i]);
+        bool is_first = true;
+        for (int k = 0; k < i && is_first && index >= 0; k++) is_first = !is_of(&rows[k], &check->cases[index]);
+        if (index < 0)
+            ck_baseline_add(&rows[i], csv);
+        else if (is_first && add_case(work, index, true, csv))
+            added++;
+        else if (is_first)
+            kept++;
+    }
+    for (int i = 0; i < check->case_count; i++)
+        if (!has_row(&work->baseline, check->cases[i].comparison->model.name, check->cases[i].engine->name))
+            added += add_case(work, i, false, csv);
+    printf("%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or time out and stay\n",
+           BASELINE_DIRECTORY, BASELINE_NAME, added, check->case_count - added - kept, SECONDS, kept, 2 * SECONDS);
+}
+
+static ck_Status update(const Work *work, ck_Error *error) {
+    ck_Csv csv = {0};
+    int failed = ck_path_make(BASELINE_DIRECTORY);
+    ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", BASELINE_DIRECTORY, strerror(failed)) : CK_OK;
+    if (!status) status = ck_csv_open(&csv, BASELINE_DIRECTORY, &ck_layouts[CK_BASELINE], error);
+    if (!status && work->baseline.count) print_worst(work, 1000);
+    if (!status) add_all(work, &csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    ck_csv_discard(&csv);
+    return status;
+}
+
+static ck_Status check(Work *work, int *deviations, ck_Error *error) {
+    ck_Arguments *arguments = &work->arguments;
+    int failed = ck_path_make(arguments->out);
+    ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", arguments->out, strerror(failed)) : CK_OK;
+    if (!status) status = ck_arguments_all_scenes(arguments, error);
+    ck_Status found = status ? status : ck_baseline_read(&work->baseline, BASELINE_DIRECTORY, error);
+    if (!status && !arguments->is_update) status = found;
+    ck_command_catch_signals();
+    if (!status) status = load_scenes(work, error);
+    if (!status) status = list_cases(work, error);
+    if (!status) status = run_cases(work, error);
+    if (!status && arguments->is_update) return update(work, error);
+    char *path = status ? NULL : ck_path_join(arguments->out, "check.xml");
+    if (!status && !path) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_check_write_junit(path, &work->check, work->rows, &work->baseline, error);
+    if (!status) *deviations = print_worst(work, MOST_PRINTED);
+    if (!status) printf("%d runs, %d deviations; JUnit: %s\n", work->check.case_count, *deviations, path);
+    free(path);
+    return status;
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Error error = {0};
+    Work work = {0};
+    int deviations = 0;
+    ck_Status status = ck_arguments_read(&work.arguments, command, argc, argv, &error);
+    if (!status) status = check(&work, &deviations, &error);
+    for (int i = 0; i < work.comparison_count; i++) ck_comparison_free(&work.comparisons[i]);
+    free(work.comparisons);
+    free(work.check.cases);
+    free(work.rows);
+    ck_baseline_free(&work.baseline);
+    ck_arguments_free(&work.arguments);
+    if (status) return ck_command_fail(status, &error);
+    return deviations ? CK_EXIT_FAILED : CK_EXIT_OK;
+}
+
+const ck_Command ck_command_check = {
+    .name = "check",
+    .arguments = "[SCENE...]",
+    .about = "regression: what was measured before, within bands; exit status 1",
+    .help = "Measures what " BASELINE_DIRECTORY "/" BASELINE_NAME
+            " holds again and prints what is beyond its band, the worst first;\nwrites check.xml (JUnit). Exit "
+            "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size change at "
+            "most: what rounding may come to on another machine.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_UPDATE,
+    .out = "out",
+    .seconds = 900,
+    .run = run,
+};

@@ -1,0 +1,51 @@
+#include "claims.h"
+#include "command.h"
+#include "machine.h"
+#include "paths.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static void show_progress(const char *claim, double value) {
+    fprintf(stderr, "\r\033[K%s: %g", claim, value);
+}
+
+static ck_Status write_tables(const char *out, ck_Error *error) {
+    ck_Csv claims = {0}, quirks = {0};
+    int failed = ck_path_make(out);
+    ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", out, strerror(failed)) : CK_OK;
+    if (!status) status = ck_csv_open(&quirks, out, &ck_layouts[CK_QUIRKS], error);
+    if (!status) status = ck_csv_open(&claims, out, &ck_layouts[CK_CLAIMS], error);
+    if (!status) status = ck_quirks_write(&quirks, "scenes", error);
+    if (!status) status = ck_claims_write(&claims, "scenes", isatty(STDERR_FILENO) ? show_progress : NULL, error);
+    if (isatty(STDERR_FILENO)) fprintf(stderr, "\r\033[K");
+    if (!status) status = ck_csv_close(&quirks, error);
+    if (!status) status = ck_csv_close(&claims, error);
+    ck_csv_discard(&quirks);
+    ck_csv_discard(&claims);
+    return status;
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Arguments arguments;
+    ck_Error error = {0};
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    const char *out = arguments.out;
+    if (!status) status = write_tables(out, &error);
+    if (!status) status = ck_machine_save(out, &error);
+    if (!status) printf("CSVs: %s\n", out);
+    ck_arguments_free(&arguments);
+    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
+}
+
+const ck_Command ck_command_claims = {
+    .name = "claims",
+    .arguments = "",
+    .about = "what was claimed of the two origins, and what their quirks cost",
+    .help = "Tests what was claimed of the two origins: writes claims.csv, sweeps over what each claim leaves open, "
+            "and\nquirks.csv, what each of their quirks costs, into --out. Takes some minutes.",
+    .groups = CK_TAKES_OUT,
+    .out = "out",
+    .run = run,
+};

@@ -1,0 +1,52 @@
+#include "command.h"
+#include "outlier.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// Says which engine stands apart, if any does.
+static void print_outliers(const ck_Comparison *comparison) {
+    for (int i = 0; i < ck_metric_count(); i++) {
+        const ck_Metric *metric = ck_metric_at(i);
+        if (!metric->at || !ck_metric_is_wanted(metric, &comparison->model)) continue;
+        ck_Outlier outlier = ck_outlier_find(comparison, metric);
+        if (outlier.run < 0) continue;
+        printf(outlier.has_truth ? "  farthest from the truth in %s: %s, %.1e; the others %.1e\n"
+                                 : "  outlier in %s: %s, %.1e from the others, which are %.1e apart\n",
+               metric->name, comparison->runs[outlier.run].engine->name, outlier.distance, outlier.rest);
+    }
+}
+
+static void show(const ck_Comparison *comparison) {
+    ck_print_summary(comparison);
+    print_outliers(comparison);
+    printf("\n");
+    fflush(stdout);
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Error error = {0};
+    ck_Arguments arguments;
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    if (!status) status = ck_arguments_all_scenes(&arguments, &error);
+    int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
+    if (result == CK_EXIT_OK)
+        printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second "
+               "(median).\nCSVs: %s\n",
+               arguments.out);
+    ck_arguments_free(&arguments);
+    return result;
+}
+
+const ck_Command ck_command_compare = {
+    .name = "compare",
+    .arguments = "[SCENE...]",
+    .about = "all engines on all scenes: the six CSVs of a comparison",
+    .help = "Runs all engines on all scenes (without SCENE: scenes/*.yaml) and writes runs.csv, metrics.csv, "
+            "deviations.csv,\nledger.csv, series.csv and machine.csv into --out. Results there that this "
+            "comparison would not\nreplace stop it: --append keeps those of other scenes, --force replaces all.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_KEEPING,
+    .out = "out",
+    .seconds = 900,
+    .run = run,
+};

@@ -1,0 +1,113 @@
+#include "command.h"
+#include "files.h"
+#include "hash.h"
+#include "study.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_WORDS 128
+
+static const ck_Command *const studies[] = {&ck_command_precision, &ck_command_stability, &ck_command_needs};
+#define STUDIES (sizeof studies / sizeof *studies)
+
+// Runs the parts' own command: all its cases are there, so that it only writes what one run would have written.
+static int run_question(const ck_Command *study, char *question, const char *scene, const char *out) {
+    char *words[MAX_WORDS + 5];
+    int count = 0;
+    *strstr(question, "\t(scene ") = 0;
+    for (char *word = strtok(question, "\t"); word && count < MAX_WORDS; word = strtok(NULL, "\t"))
+        words[count++] = word;
+    words[count++] = (char *)scene;
+    words[count++] = "--kept";
+    words[count++] = "--out";
+    words[count++] = (char *)out;
+    words[count] = NULL;
+    return study->run(study, count, words);
+}
+
+// The study whose journal a directory holds; NULL where there is none.
+static const ck_Command *find_study(const char *directory, char *question, size_t size) {
+    char name[64];
+    for (size_t i = 0; i < STUDIES; i++) {
+        snprintf(name, sizeof name, "%s.journal", studies[i]->name);
+        if (!ck_journal_question(directory, name, question, size, NULL)) return studies[i];
+    }
+    return NULL;
+}
+
+// Where the scene is that the question was asked of: as its hash says, whatever the file is called. False: not there.
+static bool is_scene(const char *question) {
+    unsigned long long wanted;
+    const char *hash = strstr(question, "\t(scene "), *place = strstr(question, CK_JOURNAL_PLACE);
+    char *text = NULL;
+    size_t size;
+    if (!hash || !place || sscanf(hash, "\t(scene %16llx", &wanted) != 1) return false;
+    ck_Status status = ck_file_read(&text, &size, place + strlen(CK_JOURNAL_PLACE), NULL);
+    bool is_same = !status && ck_hash(CK_HASH_START, text, size) == wanted;
+    free(text);
+    return is_same;
+}
+
+// The first of the parts whose scene file can be read here and is what it was; its question says where.
+static ck_Status find_scene(const ck_Command *study, char *const *parts, int count, char *question, size_t size,
+                            ck_Error *error) {
+    char name[64];
+    snprintf(name, sizeof name, "%s.journal", study->name);
+    for (int i = 0; i < count; i++)
+        if (!ck_journal_question(parts[i], name, question, size, NULL) && is_scene(question)) return CK_OK;
+    const char *place = strstr(question, CK_JOURNAL_PLACE);
+    return ck_fail(error, CK_BAD_INPUT, "%s: is not there, or not as it was when %s was asked of it",
+                   place ? place + strlen(CK_JOURNAL_PLACE) : "the scene", study->name);
+}
+
+static bool is_among(const char *directory, char *const *parts, int count) {
+    char one[PATH_MAX], other[PATH_MAX];
+    for (int i = 0; i < count; i++)
+        if (realpath(directory, one) && realpath(parts[i], other) && !strcmp(one, other)) return true;
+    return false;
+}
+
+static ck_Status check_parts(const ck_Arguments *arguments, ck_Error *error) {
+    if (arguments->word_count < 2)
+        return ck_fail(error, CK_BAD_INPUT, "merge takes OUT and the DIRs of the parts; %d are given",
+                       arguments->word_count);
+    if (is_among(arguments->words[0], arguments->words + 1, arguments->word_count - 1))
+        return ck_fail(error, CK_BAD_INPUT, "%s: is a part, too; OUT must be a directory of its own",
+                       arguments->words[0]);
+    return CK_OK;
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Arguments arguments;
+    ck_Error error = {0};
+    char question[4096];
+    const ck_Command *study = NULL;
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    char **parts = arguments.words + 1;
+    int count = arguments.word_count - 1;
+    if (!status) status = check_parts(&arguments, &error);
+    if (!status) {
+        study = find_study(parts[0], question, sizeof question);
+        if (!study) status = ck_fail(&error, CK_BAD_INPUT, "%s: holds no part of a study (NAME.journal)", parts[0]);
+    }
+    if (!status) status = ck_study_merge(arguments.words[0], study->name, (const char *const *)parts, count, &error);
+    if (!status) status = find_scene(study, parts, count, question, sizeof question, &error);
+    char *out = arguments.word_count ? arguments.words[0] : NULL;
+    ck_arguments_free(&arguments);
+    if (status) return ck_command_fail(status, &error);
+    char *place = strstr(question, CK_JOURNAL_PLACE);
+    return run_question(study, question, place + strlen(CK_JOURNAL_PLACE), out);
+}
+
+const ck_Command ck_command_merge = {
+    .name = "merge",
+    .arguments = "OUT DIR...",
+    .about = "joins the parts of a study that was run with --shard",
+    .help = "Joins the parts of a study that were run with --shard into DIR..., and writes into OUT what one run would "
+            "have\nwritten. Parts are of one study when they were asked the same of the same scene text, wherever its "
+            "file was.",
+    .run = run,
+};

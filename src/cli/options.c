@@ -1,0 +1,341 @@
+#include "command.h"
+
+#include "names.h"
+
+#include <errno.h>
+#include <fnmatch.h>
+#include <getopt.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What a value is, and so where it goes: a bool, a const char *, a double, an int; or what read makes of it.
+typedef enum Kind { FLAG, TEXT, NUMBER, COUNT, OTHER } Kind;
+
+typedef struct Option {
+    const char *name, *value; // as in --name VALUE
+    char letter;              // -x; 0: none
+    unsigned groups;          // of commands that take it
+    Kind kind;
+    size_t place;         // in ck_Arguments
+    double least, most;   // of a number
+    const char *fallback; // where it is not given; NULL: nothing to say
+    const char *help;
+    ck_Status (*read)(ck_Arguments *arguments, const char *text, ck_Error *error);
+    bool is_way; // it says how to come to the answer, not what is asked
+} Option;
+
+static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_seed(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status read_like(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error);
+
+#define PLACE(member) offsetof(ck_Arguments, member)
+
+// Adding an option is one row here, and a member of ck_Arguments.
+static const Option table[] = {
+    {"out", "DIR", 'o', CK_TAKES_OUT, TEXT, PLACE(out), .help = "write the CSVs into DIR", .is_way = true},
+    {"engine", "NAME", 'e', CK_TAKES_RUNS, OTHER, .fallback = "all", .read = add_engines,
+     .help = "only this engine, or those of a pattern as 'bullet-*'; may be given several times"},
+    {"set", "ENGINE.KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
+     .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
+    {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,
+     .help = "threads a step, where an engine can share one: regular cloths"},
+    {"time-limit", "S", 0, CK_TAKES_RUNS, NUMBER, PLACE(options.limits.seconds), 0, 1e9,
+     .help = "wall seconds that one run may take"},
+    {"memory-limit", "MIB", 0, CK_TAKES_RUNS, OTHER, .fallback = "4096", .read = set_memory,
+     .help = "memory that one run may take"},
+    {"repeats", "N", 'r', CK_TAKES_TIMING, COUNT, PLACE(options.repeats), 0, CK_MAX_REPEATS, .fallback = "5",
+     .help = "timed repeats, 0 to 99"},
+    {"budget", "S", 0, CK_TAKES_TIMING, NUMBER, PLACE(options.budget), 0, 1e6, .fallback = "2",
+     .help = "CPU seconds a timed repeat at most"},
+    {"seed", "N", 0, CK_TAKES_TIMING, OTHER, .fallback = "1", .read = set_seed,
+     .help = "for the order in which engines are timed"},
+    {"jobs", "N", 'j', CK_TAKES_JOBS, COUNT, PLACE(jobs), 1, 1024, .fallback = "one a core; one where time counts",
+     .help = "worker processes", .is_way = true},
+    {"shard", "I/N", 0, CK_TAKES_SHARD, OTHER, .read = read_shard, .is_way = true,
+     .help = "only every N-th case, from the I-th; 'clothcheck merge' joins the parts"},
+    {"kept", NULL, 0, CK_TAKES_SHARD, FLAG, PLACE(runs_nothing), .is_way = true,
+     .help = "run nothing: write what the journal in --out holds, or fail"},
+    {"error", "X", 0, CK_TAKES_GOAL | CK_TAKES_ERROR, NUMBER, PLACE(error), 0, 1e6,
+     .help = "a tolerance, in units of size"},
+    {"like", "ENGINE", 0, CK_TAKES_GOAL, OTHER, .read = read_like,
+     .help = "come close to that engine's path instead of the truth"},
+    {"vary", "KEY", 0, CK_TAKES_GOAL, OTHER, .read = add_variable,
+     .help = "search stiffness, compliance or kLST, too; may be given several times"},
+    {"validate", "SCENE", 0, CK_TAKES_GOAL, OTHER, .read = add_validation,
+     .help = "try the result on that scene, too; may be given several times"},
+    {"update", NULL, 0, CK_TAKES_UPDATE, FLAG, PLACE(is_update),
+     .help = "write the baseline anew, and print what moved"},
+    {"append", NULL, 'a', CK_TAKES_KEEPING, FLAG, PLACE(appends), .is_way = true,
+     .help = "keep the results of other scenes that --out holds; of tune, of other engines, too"},
+    {"force", NULL, 'f', CK_TAKES_KEEPING, FLAG, PLACE(forces), .is_way = true,
+     .help = "replace whatever results --out holds"},
+    {"rounds", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(rounds), 1, 99, .fallback = "7", .help = "repeats, 1 to 99"},
+    {"largest", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(largest), 16, 2048, .fallback = "1024",
+     .help = "side of the largest cloth in the growth, 16 to 2048"},
+};
+#define OPTIONS ((int)(sizeof table / sizeof *table))
+
+ck_OptionText ck_option_text(const ck_Command *command, int index) {
+    for (int i = 0; i < OPTIONS; i++) {
+        const Option *option = &table[i];
+        if (!(option->groups & command->groups) || index--) continue;
+        ck_OptionText text = {
+            .name = option->name, .value = option->value, .letter = option->letter, .help = option->help};
+        if (option->fallback) snprintf(text.fallback, sizeof text.fallback, "%s", option->fallback);
+        if (option->place == PLACE(out) && command->out)
+            snprintf(text.fallback, sizeof text.fallback, "%s", command->out);
+        if (option->place == PLACE(options.limits.seconds) && option->kind == NUMBER)
+            snprintf(text.fallback, sizeof text.fallback, "%g", command->seconds);
+        return text;
+    }
+    return (ck_OptionText){0};
+}
+
+void ck_arguments_help(const ck_Command *command) {
+    ck_OptionText text;
+    for (int i = 0; (text = ck_option_text(command, i)).name; i++) {
+        char left[60];
+        snprintf(left, sizeof left, "--%s%s%s", text.name, text.value ? " " : "", text.value ? text.value : "");
+        printf("  %c%c%c %-20s  %s", text.letter ? '-' : ' ', text.letter ? text.letter : ' ', text.letter ? ',' : ' ',
+               left, text.help);
+        printf(*text.fallback ? " (default: %s)\n" : "\n", text.fallback);
+    }
+    printf("  -h, --help                this text\n");
+    if (strstr(command->arguments, "SCENE"))
+        printf("\nA SCENE is a path, or a bare name: scenes/NAME.yaml of this folder, or else one that came with the "
+               "program.\n");
+}
+
+static ck_Status read_number(double *number, const char *text, double low, double high, const char *option,
+                             ck_Error *error) {
+    char *end;
+    *number = strtod(text, &end);
+    if (end == text || *end || !(*number >= low && *number <= high))
+        return ck_fail(error, CK_BAD_INPUT, "%s %s: it must be a number from %g to %g", option, text, low, high);
+    return CK_OK;
+}
+
+static ck_Status read_count(double *number, const char *text, double low, double high, const char *option,
+                            ck_Error *error) {
+    ck_Status status = read_number(number, text, low, high, option, NULL);
+    if (!status && floor(*number) == *number) return CK_OK;
+    return ck_fail(error, CK_BAD_INPUT, "%s %s: it must be a whole number from %g to %.16g", option, text, low, high);
+}
+
+static ck_Status fail_engine(const char *name, ck_Error *error) {
+    char known[400], hint[80];
+    return ck_fail(error, CK_BAD_INPUT, "there is no engine %s%s; known are %s", name,
+                   ck_name_hint(hint, sizeof hint, name, ck_engine_name, NULL),
+                   ck_name_list(known, sizeof known, ck_engine_name, NULL));
+}
+
+static void add_engine(ck_Arguments *arguments, const ck_Engine *engine) {
+    ck_CompareOptions *options = &arguments->options;
+    if (options->engines != arguments->engines) options->engine_count = 0;
+    options->engines = arguments->engines;
+    for (int i = 0; i < options->engine_count; i++)
+        if (arguments->engines[i] == engine) return;
+    arguments->engines[options->engine_count++] = engine;
+}
+
+static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    int found = 0;
+    for (int i = 0; i < ck_engine_count(); i++)
+        if (!fnmatch(text, ck_engine_at(i)->name, 0)) {
+            add_engine(arguments, ck_engine_at(i));
+            found++;
+        }
+    return found ? CK_OK : fail_engine(text, error);
+}
+
+static ck_Status read_like(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    arguments->like = ck_engine_find(text);
+    return arguments->like ? CK_OK : fail_engine(text, error);
+}
+
+static ck_Status fail_unknown_key(const char *text, const char *key, const ck_Engine *engine, ck_Error *error) {
+    char known[200], hint[80];
+    return ck_fail(error, CK_BAD_INPUT, "--set %s: %s has no %s%s; it has %s", text, engine->name, key,
+                   ck_name_hint(hint, sizeof hint, key, ck_setting_name, engine->settings),
+                   engine->settings ? ck_name_list(known, sizeof known, ck_setting_name, engine->settings)
+                                    : "no settings");
+}
+
+static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    char name[64], key[32], wanted[100], *end;
+    int used = 0;
+    ck_CompareOptions *options = &arguments->options;
+    if (sscanf(text, "%63[^.=].%31[^.=]=%n", name, key, &used) != 2 || !used)
+        return ck_fail(error, CK_BAD_INPUT, "--set %s: it must read ENGINE.KEY=NUMBER, as in ode-quick.substeps=16",
+                       text);
+    if (options->override_count == sizeof arguments->overrides / sizeof *arguments->overrides)
+        return ck_fail(error, CK_BAD_INPUT, "--set is given more than %d times", options->override_count);
+    ck_Override *override = &arguments->overrides[options->override_count++];
+    *override = (ck_Override){.engine = ck_engine_find(name)};
+    if (!override->engine) return fail_engine(name, error);
+    const ck_Setting *setting = ck_setting_find(override->engine->settings, key);
+    if (!setting) return fail_unknown_key(text, key, override->engine, error);
+    double number = strtod(text + used, &end);
+    if (end == text + used || *end || !ck_setting_takes(setting, number, wanted, sizeof wanted))
+        return ck_fail(error, CK_BAD_INPUT, "--set %s.%s = %s: it must be %s", name, key, text + used, wanted);
+    ck_settings_set(&override->settings, setting->slot, number);
+    return CK_OK;
+}
+
+// As --set ENGINE.threads=N of every engine that can share its steps.
+static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    double number;
+    char set[64];
+    ck_Status status = read_count(&number, text, 1, 64, "--threads", error);
+    for (int i = 0; i < ck_engine_count() && !status; i++) {
+        if (!ck_engine_setting(ck_engine_at(i), CK_THREADS)) continue;
+        snprintf(set, sizeof set, "%s.threads=%g", ck_engine_at(i)->name, number);
+        status = add_override(arguments, set, error);
+    }
+    return status;
+}
+
+static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    double number;
+    ck_Status status = read_number(&number, text, 0, 1e9, "--memory-limit", error);
+    if (!status) arguments->options.limits.memory_bytes = (size_t)(number * 1048576);
+    return status;
+}
+
+static ck_Status set_seed(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    double number;
+    ck_Status status = read_count(&number, text, 0, 1e15, "--seed", error);
+    if (!status) arguments->options.seed = (uint64_t)number;
+    return status;
+}
+
+static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    int used = 0;
+    if (sscanf(text, "%d/%d%n", &arguments->shard, &arguments->shards, &used) == 2 && !text[used] &&
+        arguments->shard >= 1 && arguments->shard <= arguments->shards && arguments->shards <= 10000)
+        return CK_OK;
+    return ck_fail(error, CK_BAD_INPUT, "--shard %s: it must read I/N with 1 <= I <= N, as in 2/4", text);
+}
+
+static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    if (arguments->vary_count == sizeof arguments->varies / sizeof *arguments->varies)
+        return ck_fail(error, CK_BAD_INPUT, "--vary is given more than %d times", arguments->vary_count);
+    arguments->varies[arguments->vary_count++] = text;
+    return CK_OK;
+}
+
+static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    const int most = sizeof arguments->validate / sizeof *arguments->validate;
+    if (arguments->validate_count == most)
+        return ck_fail(error, CK_BAD_INPUT, "--validate is given more than %d times", most);
+    ck_Status status = ck_scene_path(&arguments->validate[arguments->validate_count], text, error);
+    if (!status) arguments->validate_count++;
+    return status;
+}
+
+static ck_Status read_option(ck_Arguments *arguments, const Option *option, const char *text, ck_Error *error) {
+    char *place = (char *)arguments + option->place, name[40];
+    double number;
+    snprintf(name, sizeof name, "--%s", option->name);
+    ck_Status status = CK_OK;
+    switch (option->kind) {
+    case FLAG: *(bool *)(void *)place = true; break;
+    case TEXT: *(const char **)(void *)place = text; break;
+    case NUMBER: return read_number((double *)(void *)place, text, option->least, option->most, name, error);
+    case COUNT:
+        status = read_count(&number, text, option->least, option->most, name, error);
+        if (!status) *(int *)(void *)place = (int)number;
+        break;
+    default: status = option->read(arguments, text, error);
+    }
+    return status;
+}
+
+// Adds an option and its value, or a word alone.
+static ck_Status add_to_question(ck_Arguments *arguments, const char *option, const char *value, ck_Error *error) {
+    size_t size = sizeof arguments->question, used = strlen(arguments->question);
+    used += (size_t)snprintf(arguments->question + used, size - used, "%s%s%s%s%s", used ? "\t" : "",
+                             option ? "--" : "", option ? option : "", option && value ? "\t" : "", value ? value : "");
+    return used < size ? CK_OK : ck_fail(error, CK_BAD_INPUT, "the command line is longer than %zu characters", size);
+}
+
+static const char *option_name(const void *command, int index) {
+    return ck_option_text(command, index).name;
+}
+
+static ck_Status fail_option(const ck_Command *command, int option, const char *text, ck_Error *error) {
+    const char *name = text + strspn(text, "-"), *nearest = ck_name_nearest(name, option_name, command);
+    char hint[80] = "";
+    if (option != ':' && nearest) snprintf(hint, sizeof hint, "; did you mean --%s?", nearest);
+    return ck_fail(error, CK_BAD_INPUT, "%s: %s%s; 'clothcheck %s --help' tells what there is", text,
+                   option == ':' ? "needs a value" : "no such option", hint, command->name);
+}
+
+// A word that is no option: a scene, or what the command makes of it.
+static ck_Status add_word(ck_Arguments *arguments, const ck_Command *command, char *word, ck_Error *error) {
+    if (strstr(command->arguments, "SCENE")) return ck_arguments_add_scene(arguments, word, error);
+    if (!*command->arguments) return ck_fail(error, CK_BAD_INPUT, "%s: %s takes no SCENE", word, command->name);
+    if (arguments->word_count == sizeof arguments->words / sizeof *arguments->words)
+        return ck_fail(error, CK_BAD_INPUT, "%s takes at most %d arguments", command->name, arguments->word_count);
+    arguments->words[arguments->word_count++] = word;
+    return CK_OK;
+}
+
+// What getopt_long reads by; letters begins with a colon, so that a missing value is told from an unknown option.
+static void list_options(const ck_Command *command, struct option *options, char *letters) {
+    *letters++ = ':';
+    for (int i = 0; i < OPTIONS; i++) {
+        if (!(table[i].groups & command->groups)) continue;
+        *options++ = (struct option){table[i].name, table[i].kind == FLAG ? no_argument : required_argument, NULL, i};
+        if (!table[i].letter) continue;
+        *letters++ = table[i].letter;
+        if (table[i].kind != FLAG) *letters++ = ':';
+    }
+    *options = (struct option){0};
+    *letters = 0;
+}
+
+static const Option *option_of(int found) {
+    for (int i = 0; found >= OPTIONS && i < OPTIONS; i++)
+        if (table[i].letter == found) return &table[i];
+    return &table[found];
+}
+_Static_assert(OPTIONS < 'A', "the numbers of long options must not be letters");
+
+ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv,
+                            ck_Error *error) {
+    *arguments = (ck_Arguments){
+        .options = ck_compare_options_default(), .error = NAN, .rounds = 7, .largest = 1024, .out = command->out};
+    arguments->options.overrides = arguments->overrides;
+    if (command->seconds > 0) arguments->options.limits.seconds = command->seconds;
+    struct option options[OPTIONS + 1];
+    char letters[2 * OPTIONS + 2];
+    list_options(command, options, letters);
+    ck_Status status = add_to_question(arguments, NULL, argv[0], error);
+    optind = 0; // start anew, whoever parsed before
+    opterr = 0;
+    for (int found; !status && (found = getopt_long(argc, argv, letters, options, NULL)) != -1;) {
+        if (found == '?' || found == ':') return fail_option(command, found, argv[optind - 1], error);
+        const Option *option = option_of(found);
+        status = read_option(arguments, option, optarg, error);
+        if (!status && !option->is_way) status = add_to_question(arguments, option->name, optarg, error);
+    }
+    for (int i = optind; i < argc && !status; i++) status = add_word(arguments, command, argv[i], error);
+    return status;
+}
+
+void ck_arguments_free(ck_Arguments *arguments) {
+    for (int i = 0; i < arguments->scene_count; i++) free(arguments->scenes[i]);
+    for (int i = 0; i < arguments->validate_count; i++) free(arguments->validate[i]);
+    free(arguments->scenes);
+    *arguments = (ck_Arguments){0};
+}

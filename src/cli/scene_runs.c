@@ -1,0 +1,116 @@
+#include "command.h"
+#include "paths.h"
+#include "replay.h"
+#include "tables.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+int ck_command_fail(ck_Status status, const ck_Error *error) {
+    fprintf(stderr, "clothcheck: %s\n", error->message);
+    return status == CK_BAD_INPUT ? CK_EXIT_USAGE : CK_EXIT_FAILED;
+}
+
+static void interrupt(int signal_number) {
+    (void)signal_number;
+    ck_child_interrupted = 1;
+}
+
+void ck_command_catch_signals(void) {
+    signal(SIGINT, interrupt);
+    signal(SIGTERM, interrupt);
+}
+
+static void show_progress(const char *scene, const char *engine, const char *doing) {
+    fprintf(stderr, "\r\033[K%s %s on %s", doing, engine, scene);
+}
+
+// Two scenes of one name would be one in the CSVs.
+static ck_Status check_names(const ck_Comparison *comparisons, int count, ck_Error *error) {
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < i; j++)
+            if (!strcmp(comparisons[i].model.name, comparisons[j].model.name))
+                return ck_fail(error, CK_BAD_INPUT, "%s and %s are both named %s; give one of them another name",
+                               comparisons[j].path, comparisons[i].path, comparisons[i].model.name);
+    return CK_OK;
+}
+
+static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *arguments, ck_Tables *tables,
+                         void (*show)(const ck_Comparison *), ck_Error *error) {
+    ck_CompareOptions options = arguments->options;
+    bool terminal = isatty(STDERR_FILENO);
+    ck_command_catch_signals();
+    if (terminal) options.progress = show_progress;
+    char *cache = arguments->out ? ck_path_join(arguments->out, "truths") : NULL;
+    options.cache = cache;
+    ck_Status status = CK_OK;
+    for (int i = 0; i < arguments->scene_count && !status; i++) {
+        status = ck_comparison_run(&comparisons[i], &options, error);
+        if (terminal) fprintf(stderr, "\r\033[K");
+        if (!status && arguments->out) ck_tables_add(tables, &comparisons[i], &options);
+        if (!status && arguments->out) status = ck_replay_write(&comparisons[i], arguments->out, error);
+        if (!status) show(&comparisons[i]);
+        ck_comparison_free_runs(&comparisons[i]);
+    }
+    free(cache);
+    return status;
+}
+
+int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Comparison *comparison)) {
+    ck_Error error = {0};
+    ck_Tables tables = {0};
+    int count = 0;
+    ck_Comparison *comparisons = calloc((size_t)arguments->scene_count, sizeof *comparisons);
+    ck_Status status = comparisons ? CK_OK : ck_fail(&error, CK_NO_MEMORY, "out of memory");
+    for (; count < arguments->scene_count && !status; count++)
+        status = ck_comparison_load(&comparisons[count], arguments->scenes[count], &error);
+    if (!status) status = check_names(comparisons, count, &error);
+    ck_Keeping keeping = arguments->forces ? CK_KEEP_NONE : arguments->appends ? CK_KEEP_OTHERS : CK_KEEP_OR_FAIL;
+    if (!status && arguments->out)
+        status = ck_tables_open(&tables, arguments->out, keeping, comparisons, count, &arguments->options, &error);
+    if (!status) status = run_all(comparisons, arguments, &tables, show, &error);
+    if (!status && arguments->out) status = ck_tables_close(&tables, &error);
+    ck_tables_discard(&tables);
+    for (int i = 0; i < count; i++) ck_comparison_free(&comparisons[i]);
+    free(comparisons);
+    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
+}
+
+// a number in three digits, or a dash where there is none
+static void print_number(const char *format, int width, double number) {
+    char text[32] = "-";
+    if (!isnan(number)) snprintf(text, sizeof text, fabs(number) < 1e6 ? format : "%.3g", number);
+    printf(" %*s", width, text);
+}
+
+static void print_engine(const ck_Comparison *comparison, int index) {
+    const ck_Run *run = &comparison->runs[index];
+    const ck_Reference *reference = &comparison->truth.reference;
+    double sag = NAN, sag_error = NAN, distance = NAN;
+    if (ck_comparison_has_path(comparison, index)) {
+        sag = ck_metric_value(ck_metric_find("sag"), run->model, &run->trajectory, reference);
+        sag_error = fabs(sag - ck_metric_truth(ck_metric_find("sag"), run->model, reference));
+        distance = ck_metric_value(ck_metric_find("position_rms"), run->model, &run->trajectory, reference);
+    }
+    double simulated = run->timing.frames * run->model->step;
+    printf("%-18s %-16s %-13s", run->model->name, run->engine->name, ck_run_status_names[run->status]);
+    print_number("%.6f", 10, sag);
+    print_number("%.1e", 9, sag_error);
+    print_number("%.1e", 9, distance);
+    print_number("%.3g", 9, 1e3 * ck_timing_median(&run->timing) / simulated);
+    printf("\n");
+}
+
+void ck_print_summary(const ck_Comparison *comparison) {
+    printf("%-18s %-16s %-13s %10s %9s %9s %9s\n", "scene", "engine", "status", "sag", "error", "rms error",
+           "ms CPU/s");
+    for (int i = 0; i < comparison->run_count; i++) print_engine(comparison, i);
+    // what is missing is said, in place of a column of dashes
+    const ck_Truth *truth = &comparison->truth;
+    if (truth->form && !truth->path_count && !truth->reference.is_invariant) printf("  truth: %s\n", truth->kind);
+    fflush(stdout);
+}

@@ -1,0 +1,77 @@
+#include "machine.h"
+
+#include "engines.h"
+#include "loops.h"
+
+#include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
+#include <unistd.h>
+
+static void read_processor(char *out, size_t size) {
+    char line[256];
+    snprintf(out, size, "unknown");
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && fgets(line, sizeof line, file)) {
+        char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) || !colon) continue;
+        colon[strcspn(colon, "\n")] = 0;
+        snprintf(out, size, "%s", colon + 2);
+        break;
+    }
+    if (file) fclose(file);
+}
+
+// How wide the instructions are that a peer's library was built with, as its packagers left it.
+static void tell_library(ck_MachineFact tell, void *context, const char *name, const char *files,
+                         const char *registers) {
+    char key[64], value[1024];
+    snprintf(key, sizeof key, "library %s", name);
+    snprintf(value, sizeof value, "%s; registers of %s", files, registers);
+    tell(context, key, value);
+}
+
+void ck_machine_tell(ck_MachineFact tell, void *context) {
+    char text[256], key[64];
+    read_processor(text, sizeof text);
+    tell(context, "processor", text);
+    snprintf(text, sizeof text, "%ld", sysconf(_SC_NPROCESSORS_ONLN));
+    tell(context, "cores", text);
+    struct utsname system;
+    if (!uname(&system)) {
+        snprintf(text, sizeof text, "%s %s %s", system.sysname, system.release, system.machine);
+        tell(context, "system", text);
+    }
+    tell(context, "compiler", "gcc " __VERSION__);
+    tell(context, "flags", CK_FLAGS);
+    // round otherwise where they do not fuse
+    tell(context, "vectors", ck_loops_at(0)->vectors);
+    tell_library(tell, context, "Bullet", CK_BULLET_FILES, CK_BULLET_REGISTERS);
+    tell_library(tell, context, "ODE", CK_ODE_FILES, CK_ODE_REGISTERS);
+    tell(context, "clothcheck", CK_VERSION);
+    for (int i = 0; i < ck_engine_count(); i++) {
+        snprintf(key, sizeof key, "engine %s", ck_engine_at(i)->name);
+        tell(context, key, ck_engine_at(i)->version());
+    }
+    time_t now = time(NULL);
+    strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+    tell(context, "date", text);
+}
+
+static void add_fact(void *csv, const char *key, const char *value) {
+    ck_csv_text(csv, key);
+    ck_csv_text(csv, value);
+}
+
+void ck_machine_write(ck_Csv *csv) {
+    ck_machine_tell(add_fact, csv);
+}
+
+ck_Status ck_machine_save(const char *directory, ck_Error *error) {
+    ck_Csv csv = {0};
+    ck_Status status = ck_csv_open(&csv, directory, &ck_layouts[CK_MACHINE], error);
+    if (!status) ck_machine_write(&csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    ck_csv_discard(&csv);
+    return status;
+}

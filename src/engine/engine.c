@@ -1,0 +1,25 @@
+#include "engine.h"
+
+#include <math.h>
+#include <stddef.h>
+
+const ck_Setting *ck_engine_setting(const ck_Engine *engine, int slot) {
+    for (const ck_Setting *row = engine->settings; row && row->name; row++)
+        if (row->slot == slot) return row;
+    return NULL;
+}
+
+ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame) {
+    for (int i = 0; i < model->release_count && engine->release; i++)
+        for (int j = 0; j < model->releases[i].particle_count && model->releases[i].frame == frame; j++)
+            engine->release(state, model->releases[i].particles[j]);
+    return engine->step(state);
+}
+
+void ck_engine_read(const ck_Engine *engine, const void *state, const ck_Trajectory *trajectory, int frame) {
+    engine->read(state, ck_trajectory_position(trajectory, frame), ck_trajectory_velocity(trajectory, frame));
+    if (!trajectory->contact) return;
+    double *contact = trajectory->contact + 3 * (size_t)frame;
+    for (int axis = 0; axis < 3; axis++) contact[axis] = NAN;
+    if (engine->contact) engine->contact(state, contact);
+}

@@ -1,0 +1,68 @@
+#include "engines.h"
+
+#include "names.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// ends with NULL
+extern const ck_Engine *const ck_engine_table[];
+
+int ck_engine_count(void) {
+    int count = 0;
+    while (ck_engine_table[count]) count++;
+    return count;
+}
+
+const ck_Engine *ck_engine_at(int index) {
+    return ck_engine_table[index];
+}
+
+const ck_Engine *ck_engine_find(const char *name) {
+    for (int i = 0; ck_engine_table[i]; i++)
+        if (!strcmp(ck_engine_table[i]->name, name)) return ck_engine_table[i];
+    return NULL;
+}
+
+const char *ck_engine_name(const void *table, int index) {
+    (void)table;
+    return index < ck_engine_count() ? ck_engine_table[index]->name : NULL;
+}
+
+static ck_Status check_setting(const ck_Scene *scene, const ck_SceneSetting *setting, ck_Error *error) {
+    char known[400], hint[80], wanted[100];
+    const ck_Engine *engine = ck_engine_find(setting->engine);
+    if (!engine)
+        return ck_document_fail(&scene->document, setting->engine_at, error,
+                                "unknown key %s in settings%s; known here: %s", setting->engine,
+                                ck_name_hint(hint, sizeof hint, setting->engine, ck_engine_name, NULL),
+                                ck_name_list(known, sizeof known, ck_engine_name, NULL));
+    const ck_Setting *row = ck_setting_find(engine->settings, setting->key);
+    if (!row)
+        return ck_document_fail(
+            &scene->document, setting->key_at, error, "unknown key %s in settings.%s%s; known here: %s", setting->key,
+            engine->name, ck_name_hint(hint, sizeof hint, setting->key, ck_setting_name, engine->settings),
+            engine->settings ? ck_name_list(known, sizeof known, ck_setting_name, engine->settings) : "none");
+    if (!ck_setting_takes(row, setting->value, wanted, sizeof wanted))
+        return ck_document_fail(&scene->document, setting->value_at, error, "settings.%s.%s is %.10g; it must be %s",
+                                engine->name, setting->key, setting->value, wanted);
+    return CK_OK;
+}
+
+ck_Status ck_engines_check(const ck_Scene *scene, ck_Error *error) {
+    ck_Status status = CK_OK;
+    for (int i = 0; i < scene->setting_count && !status; i++) status = check_setting(scene, &scene->settings[i], error);
+    return status;
+}
+
+ck_Settings ck_engine_scene_settings(const ck_Engine *engine, const ck_Scene *scene) {
+    ck_Settings settings = {0};
+    for (int i = 0; i < scene->setting_count; i++) {
+        const ck_Setting *row = strcmp(scene->settings[i].engine, engine->name)
+                                    ? NULL
+                                    : ck_setting_find(engine->settings, scene->settings[i].key);
+        if (row) ck_settings_set(&settings, row->slot, scene->settings[i].value);
+    }
+    return settings;
+}

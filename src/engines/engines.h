@@ -1,0 +1,25 @@
+// The table of engines.
+#ifndef CK_ENGINES_H
+#define CK_ENGINES_H
+
+#include "engine.h"
+#include "scene.h"
+
+// In the order of the reports.
+int ck_engine_count(void);
+const ck_Engine *ck_engine_at(int index);
+
+// NULL where there is no such engine.
+const ck_Engine *ck_engine_find(const char *name);
+
+// Names by their number, as ck_name_hint reads them; NULL beyond the last.
+const char *ck_engine_name(const void *table, int index);
+
+// Whether all that a scene sets is of an engine there is, a setting that it has, and in its range.
+// Errors: CK_BAD_INPUT with file:line:column.
+ck_Status ck_engines_check(const ck_Scene *scene, ck_Error *error);
+
+// The settings that a checked scene holds for an engine.
+ck_Settings ck_engine_scene_settings(const ck_Engine *engine, const ck_Scene *scene);
+
+#endif

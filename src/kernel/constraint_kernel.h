@@ -1,0 +1,53 @@
+// Position constraints on a regular cloth, Gauss–Seidel over rows: rigid bars and compliant springs (XPBD).
+//
+// A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
+// corrected vector by vector of eight, however wide the processor's are: those along it from even columns of a run,
+// then from odd ones; then of bars those to the next row, straight down, down right and down left, of springs those
+// down right and down left, and straight down from the row above. That is the order of ck_sweep_order.
+#ifndef CK_CONSTRAINT_KERNEL_H
+#define CK_CONSTRAINT_KERNEL_H
+
+#include "loops.h"
+#include "rows.h"
+#include "status.h"
+#include "sweep_order.h"
+#include "waves.h"
+
+// From that l²/L² on a bar is long, and below that d·d_start/L² it has turned (by 66° where its length is kept). Others
+// are corrected with L² in the place of d·d_start, by one and a half times their strain too much: with 1.4 a sheet of
+// 20×20 rigid bars at 2 ms and 20 sweeps shook to pieces, with 1.2 it held.
+#define CK_LONG_BAR 1.2
+#define CK_TURNED_BAR 0.4
+
+typedef struct ck_ProjectionRule {
+    ck_Projection projection;
+    double dt;
+    uint32_t iterations;
+    double carry, push[3]; // 1 and m/s
+    double keep;
+    double compliance; // m/N of every spring; 0: 1/k of each
+    double relaxation; // times which each correction is made: 1, or up to 2 for fewer sweeps
+} ck_ProjectionRule;
+
+typedef struct ck_ProjectedCloth ck_ProjectedCloth;
+
+// True where the kernel takes a model: a regular cloth without bending springs and colliders.
+bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
+
+// Position, velocity and the velocity a substep earlier, [3*n], are taken over; inverse_mass [n] is 0 where pinned.
+// Memory: 10 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
+// ck_projection_destroy.
+ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Loops *loops, const ck_Model *model,
+                               const ck_RowSprings *springs, const ck_ProjectionRule *rule, const double *position,
+                               const double *velocity, const double *before, const double *inverse_mass,
+                               ck_Error *error);
+void ck_projection_destroy(ck_ProjectedCloth *cloth);
+
+// As many substeps, without allocation; sweeps run interleaved, a few rows apart, which changes no result.
+// The same bits however many threads share the waves; on which processors, loops.h says.
+void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
+
+// [3*n] m, m/s, m/s: before is the velocity of the last substep but one.
+void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before);
+
+#endif

@@ -1,0 +1,274 @@
+// Compiled once for each kind of vectors; see loops.h.
+#include "constraint_loop.h"
+#include "lanes.h"
+
+#include <limits.h>
+#include <string.h>
+
+enum {
+    DAMPED = CK_SWEEP_DAMPED,
+    REPEATED = CK_SWEEP_REPEATED,
+    BARS = CK_SWEEP_BARS,
+    HELD = CK_SWEEP_HELD,
+    FAR = CK_SWEEP_FAR
+};
+
+// A sweep at a row.
+typedef struct RowSweep {
+    int row;
+    long sweep;
+} RowSweep;
+
+// A vector of springs.
+typedef struct Ends {
+    ck_Place a, b;
+    ck_SpringKind kind;
+    double *multiplier;
+} Ends;
+
+// What a stripe says of them.
+typedef struct Springs {
+    ck_Lanes share, share_rest, softness, viscosity;
+} Springs;
+
+CK_INLINE Springs springs_of(const ck_Stripe *stripe, int lane) {
+    return (Springs){ck_lanes_load(stripe->share + lane), ck_lanes_load(stripe->share_rest + lane),
+                     ck_lanes_load(stripe->softness + lane), ck_lanes_load(stripe->viscosity + lane)};
+}
+
+// 0 where one of two ends is free, 1 where both are or none: then none will move.
+CK_INLINE ck_Lanes both_alike(const ck_ProjectedCloth *cloth, const Ends *ends) {
+    ck_Lanes apart = ck_lanes_load(cloth->is_free + ends->a.single) - ck_lanes_load(cloth->is_free + ends->b.single);
+    return 1 - apart * apart;
+}
+
+// x_a ← x_a + scale·way, x_b ← x_b − scale·way, where free. Where b is shifted, it may reach into a: a has the last
+// word.
+CK_INLINE void move(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way, const int terms) {
+    ck_Lanes scale_a = scale, scale_b = scale;
+    if (terms & HELD) {
+        scale_a *= ck_lanes_load(cloth->is_free + ends->a.single);
+        scale_b *= ck_lanes_load(cloth->is_free + ends->b.single);
+    }
+    ck_Lanes3 a = ck_lanes3_add_scaled(ck_lanes3_load(cloth->x + ends->a.tile), scale_a, way);
+    ck_Lanes3 b = ck_lanes3_subtract_scaled(ck_lanes3_load(cloth->x + ends->b.tile), scale_b, way);
+    ck_lanes3_store(cloth->x + ends->b.tile, b);
+    ck_lanes3_store(cloth->x + ends->a.tile, a);
+}
+
+CK_INLINE ck_Lanes3 span_of(const double *tiles, const Ends *ends) {
+    return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
+}
+
+// s·(l² − L²)/(4·L²) of bars.
+CK_INLINE ck_Lanes scale_of(const Springs *springs, ck_Lanes squared) {
+    return ck_lanes_plus(-springs->share_rest, springs->share, squared);
+}
+
+CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way,
+                         const int terms) {
+    if (terms & HELD) scale += scale - scale * both_alike(cloth, ends);
+    move(cloth, ends, scale, way, terms);
+}
+
+// Each bar by itself: by s·(l² − L²)/(4·d·d_start) where it is long, and along itself where it turned by more than 66°,
+// which in a row without long bars so far is asked of long ones alone. Seldom, and not in line, so that the others'
+// registers are their own.
+static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs, bool held,
+                                                  bool asks_all) {
+    const ck_Lanes3 now = span_of(cloth->x, &ends), start = span_of(cloth->start, &ends);
+    const ck_Lanes square = ck_lanes_all(cloth->rest[ends.kind] * cloth->rest[ends.kind]);
+    const ck_Lanes along = ck_lanes3_dot(now, start), squared = ck_lanes3_dot(now, now);
+    const ck_Lanes near = scale_of(&springs, squared);
+    const ck_LaneMask is_long = ck_lanes_less(ck_lanes_all(cloth->long_scale), near);
+    const ck_Lanes asked = asks_all ? along : ck_lanes_choose(is_long, along, square);
+    const ck_LaneMask has_turned = ck_lanes_less(asked, CK_TURNED_BAR * square);
+    const ck_Lanes length = ck_lanes_choose(has_turned, squared, along);
+    move_bars(cloth, &ends, ck_lanes_choose(is_long, near * square / length, near),
+              ck_lanes3_choose(has_turned, now, start), held ? HELD : 0);
+}
+
+// Along d_start by s·(l² − L²)/(4·L²), where masses cancel and s is the relaxation: L² in the place of d·d_start, for a
+// division takes as long as all the rest, and the next sweep mends what that leaves. Where a bar turned by so much that
+// there is none of its length along d_start, that makes it long; so does the flight that turned it, mostly at once. A
+// row with a long bar is looked at bar by bar in the substep's further sweeps.
+CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, RowSweep at,
+                           const int terms) {
+    const ck_Lanes3 now = span_of(cloth->x, ends);
+    const ck_Lanes scale = scale_of(springs, ck_lanes3_dot(now, now));
+    if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0)) {
+        cloth->far_from[at.row] = at.sweep + 1;
+        project_far(cloth, *ends, *springs, (terms & HELD) != 0, false);
+    } else
+        move_bars(cloth, ends, scale, span_of(cloth->start, ends), terms);
+}
+
+// By the share of (1 − L'/l), along the spring, that is its own: L' is the length at which it would rest.
+CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs,
+                              const int terms) {
+    const ck_Compliant *compliant = &cloth->compliant[ends->kind];
+    ck_Lanes3 now = span_of(cloth->x, ends);
+    ck_Lanes squared = ck_lanes3_dot(now, now), inverse;
+    ck_lanes_inverse_root(&inverse, &squared, 1);
+    ck_Lanes share = springs->share, share_rest = springs->share_rest;
+    if (terms & REPEATED) share_rest = ck_lanes_minus(share_rest, springs->softness, ck_lanes_load(ends->multiplier));
+    if (terms & DAMPED) {
+        ck_Lanes3 moved = ck_lanes3_subtract(now, span_of(cloth->start, ends));
+        share_rest = ck_lanes_minus(share_rest, springs->viscosity * ck_lanes3_dot(moved, now), inverse);
+    }
+    ck_Lanes scale = ck_lanes_minus(share, share_rest, inverse);
+    if (terms & HELD) scale *= compliant->alone + (1 - compliant->alone) * both_alike(cloth, ends);
+    if (terms & REPEATED)
+        ck_lanes_store(ends->multiplier, ck_lanes_minus(ck_lanes_load(ends->multiplier), scale, squared * inverse));
+    move(cloth, ends, scale, now, terms);
+}
+
+CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, ck_Colour colour, int row, int vector) {
+    const ck_Rows *rows = &cloth->rows;
+    const ck_Place here = ck_rows_place(rows, row, vector), below = ck_rows_place(rows, row + 1, vector);
+    double *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + here.single : NULL;
+    switch (colour) {
+    case CK_DOWN:
+    case CK_DOWN_LATE: return (Ends){here, below, CK_STRUCTURAL, multiplier};
+    case CK_DOWN_RIGHT: return (Ends){here, ck_rows_right(rows, row + 1, vector, 1), CK_SHEAR, multiplier};
+    case CK_DOWN_LEFT: return (Ends){ck_rows_right(rows, row, vector, 1), below, CK_SHEAR, multiplier};
+    default: return (Ends){here, ck_rows_right(rows, row, vector, 1), CK_STRUCTURAL, multiplier};
+    }
+}
+
+CK_INLINE Ends ends_after(Ends ends, long singles, long tiles) {
+    return (Ends){{ends.a.single + singles, ends.a.tile + tiles},
+                  {ends.b.single + singles, ends.b.tile + tiles},
+                  ends.kind,
+                  ends.multiplier ? ends.multiplier + singles : NULL};
+}
+
+CK_INLINE ck_Direction direction_of(ck_Colour colour) {
+    if (colour == CK_DOWN_RIGHT || colour == CK_DOWN_LEFT) return CK_IS_ACROSS;
+    return colour == CK_DOWN || colour == CK_DOWN_LATE ? CK_IS_DOWN : CK_IS_ALONG;
+}
+
+// The vectors of a row that are of a colour: first, first + step … below end.
+typedef struct Vectors {
+    int first, step, end;
+} Vectors;
+
+CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, ck_Colour colour, int row) {
+    const int span = cloth->rows.span;
+    if (colour == CK_ALONG_EVEN || colour == CK_ALONG_ODD) return (Vectors){colour == CK_ALONG_ODD, 2, span - 1};
+    if (colour == CK_ALONG_LAST) return (Vectors){span - 1, 1, span};
+    bool is_there =
+        row + 1 < cloth->rows.rows && (colour == CK_DOWN || colour == CK_DOWN_LATE || cloth->rest[CK_SHEAR] > 0);
+    return (Vectors){0, 1, is_there ? span : 0};
+}
+
+CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe, RowSweep at,
+                              const int terms) {
+    for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
+        const Ends part = ends_after(*ends, lane, lane);
+        const Springs springs = springs_of(stripe, lane);
+        if (terms & FAR)
+            project_far(cloth, part, springs, true, true);
+        else if (terms & BARS)
+            project_bar(cloth, &part, &springs, at, terms);
+        else
+            project_spring(cloth, &part, &springs, terms);
+    }
+}
+
+// The last vector, whose right is the first, comes by itself.
+CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, RowSweep at, const int terms) {
+    const ck_Stripe *stripes = cloth->stripes[direction_of(colour)];
+    const Vectors vectors = vectors_of(cloth, colour, at.row);
+    const int last = cloth->rows.span - 1;
+    Ends ends = ends_of(cloth, colour, at.row, vectors.first);
+    for (int i = vectors.first; i < vectors.end && i < last; i += vectors.step) {
+        project_stripe(cloth, &ends, &stripes[i], at, terms);
+        ends = ends_after(ends, vectors.step * CK_STRIPE, vectors.step * 3 * CK_STRIPE);
+    }
+    if (vectors.end <= last) return;
+    ends = ends_of(cloth, colour, at.row, last);
+    project_stripe(cloth, &ends, &stripes[last], at, terms);
+}
+
+static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour, RowSweep at) {
+    project_row(cloth, colour, at, BARS | FAR);
+}
+
+#define COLOURS 6
+
+// The order of a sweep at a row. Springs that come late do more than twice as much for a stretched cloth; bars where
+// they are more than the freedoms they act on shake with it.
+static const ck_Colour order_of_bars[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD,  CK_ALONG_LAST,
+                                                 CK_DOWN,       CK_DOWN_RIGHT, CK_DOWN_LEFT};
+static const ck_Colour order_of_springs[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD, CK_ALONG_LAST,
+                                                    CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN_LATE};
+
+CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Wave *wave, int first, int end, ck_Colour colour,
+                              const int terms) {
+    for (int i = first; i < end; i++) {
+        int at = wave->wave - CK_SWEEP_LAG * i, row = at - (colour == CK_DOWN_LATE);
+        if (row < 0 || at >= cloth->rows.rows) continue;
+        const RowSweep here = {row, wave->first_sweep + i};
+        if ((terms & BARS) && cloth->far_from[row] <= here.sweep)
+            project_far_row(cloth, colour, here);
+        else if (cloth->is_held[row])
+            project_row(cloth, colour, here, terms | HELD);
+        else
+            project_row(cloth, colour, here, terms);
+    }
+}
+
+// x ← x + carried·(x − x_start) + push;  x_start ← x as it was. Velocities are what positions have moved by.
+CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
+    const ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile);
+    const ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->start + at.tile));
+    const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved);
+    ck_lanes3_store(cloth->start + at.tile, x);
+    ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(x, ck_lanes_load(cloth->is_free + at.single), way));
+    if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
+}
+
+CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
+    cloth->far_from[row] = LONG_MAX;
+    for (int i = 0; i < cloth->rows.span; i++)
+        for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
+            const ck_Place at = ck_rows_place(&cloth->rows, row, i);
+            predict_vector(cloth, (ck_Place){at.single + lane, at.tile + lane}, is_last);
+        }
+    const size_t bytes = sizeof(double) * (size_t)cloth->rows.stride;
+    for (int colour = CK_ALONG_LAST; colour <= CK_DOWN_LEFT && cloth->multipliers; colour++)
+        memset(cloth->multiplier[colour] + row * cloth->rows.stride, 0, bytes);
+}
+
+// Colour by colour, so that each sweep in flight has the others' work to wait with, and each in a loop of its own,
+// which takes a seventh less time on a narrow cloth. A substep's first sweep finds the row below predicted.
+CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Wave *wave, const int terms) {
+    for (int i = 0; i < wave->sweeps; i++) {
+        long sweep = wave->first_sweep + i;
+        int row = wave->wave - CK_SWEEP_LAG * i;
+        if (sweep % cloth->rule.iterations || row < 0 || row >= cloth->rows.rows) continue;
+        bool is_last = sweep + cloth->rule.iterations >= cloth->sweeps;
+        if (row == 0) predict_row(cloth, 0, is_last);
+        if (row + 1 < cloth->rows.rows) predict_row(cloth, row + 1, is_last);
+    }
+    const int together = ck_rows_are_wide(&cloth->rows) ? 1 : wave->sweeps;
+    for (int first = 0; first < wave->sweeps; first += together)
+#pragma GCC unroll 6
+        for (int turn = 0; turn < COLOURS; turn++)
+            project_colour(cloth, wave, first, first + together,
+                           (terms & BARS ? order_of_bars : order_of_springs)[turn], terms);
+}
+
+// The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.
+ck_ProjectionWave CK_LOOP(ck_projection_wave);
+void CK_LOOP(ck_projection_wave)(const ck_ProjectedCloth *shared, const ck_Wave *wave) {
+    const ck_ProjectedCloth cloth = *shared;
+    switch (cloth.terms) {
+    case BARS: run_colours(&cloth, wave, BARS); break;
+    case 0: run_colours(&cloth, wave, 0); break;
+    case DAMPED: run_colours(&cloth, wave, DAMPED); break;
+    case REPEATED: run_colours(&cloth, wave, REPEATED); break;
+    default: run_colours(&cloth, wave, REPEATED | DAMPED); break;
+    }
+}

@@ -1,0 +1,71 @@
+// What the sweeps over rows of kernel_projection work on.
+#ifndef CK_CONSTRAINT_LOOP_H
+#define CK_CONSTRAINT_LOOP_H
+
+#include "constraint_kernel.h"
+#include "loops.h"
+
+// Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it.
+#define CK_SWEEP_LAG 3
+
+// One colour of a row's springs: no two of a colour share a particle. DOWN_LATE is the DOWN of the row above.
+typedef enum ck_Colour {
+    CK_ALONG_EVEN,
+    CK_ALONG_ODD,
+    CK_ALONG_LAST,
+    CK_DOWN,
+    CK_DOWN_RIGHT,
+    CK_DOWN_LEFT,
+    CK_DOWN_LATE,
+    CK_COLOUR_COUNT
+} ck_Colour;
+
+// What a correction needs of a kind of springs.
+typedef struct ck_Compliant {
+    double compliance, gamma; // α̃ and γ̃
+    double share;             // w/((1 + γ̃)·W + α̃), both ends free
+    double alone;             // times which one end moves where the other is held
+} ck_Compliant;
+
+// Eight springs of one kind, a lane each; 0 where there is none: that moves nothing.
+typedef struct ck_Stripe {
+    double share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(4·L²)
+    double share_rest[CK_STRIPE]; // that times L, of bars times L²
+    double softness[CK_STRIPE];   // of springs share·α̃·m
+    double viscosity[CK_STRIPE];  // of springs share·γ̃
+} ck_Stripe;
+
+// A row's springs: those down, along it and across. All rows are alike.
+typedef enum ck_Direction { CK_IS_DOWN, CK_IS_ALONG, CK_IS_ACROSS, CK_DIRECTIONS } ck_Direction;
+
+struct ck_ProjectedCloth {
+    const ck_Loops *loops;
+    ck_Rows rows;
+    ck_ProjectionRule rule;
+    double carried, push[3];            // what a substep moves of what the last one moved, and m on top of that
+    double mass, rest[CK_SPRING_KINDS]; // kg, m
+    ck_Compliant compliant[CK_SPRING_KINDS];
+    ck_Stripe *stripes[CK_DIRECTIONS]; // [span]
+    double long_scale;                 // of bars: the correction beyond which they are long
+    int terms;
+    long sweeps;       // of this call
+    int depth;         // of which so many run interleaved
+    double *x, *start; // tiles, m; start: before the last substep
+    double *before;    // m moved in the substep before the last one
+    double *is_free;
+    double *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
+    bool *is_held;                       // [rows] a pin in the row or the one below
+    long *far_from;                      // [rows] sweep from which on bars are looked at one by one
+    double *state, *springs, *multipliers;
+};
+
+// What a cloth does not have is not in its loop; HELD and FAR are a row's.
+enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4, CK_SWEEP_HELD = 8, CK_SWEEP_FAR = 16 };
+
+// The sweeps of a block, and the row at which each is in a wave.
+typedef struct ck_Wave {
+    long first_sweep;
+    int sweeps, wave;
+} ck_Wave;
+
+#endif

@@ -1,0 +1,28 @@
+// What the loops over a row of kernel_explicit work on.
+#ifndef CK_SPRING_LOOP_H
+#define CK_SPRING_LOOP_H
+
+#include "loops.h"
+#include "rows.h"
+
+struct ck_ExplicitCloth {
+    const ck_Loops *loops;
+    ck_Rows rows;
+    ck_RowSprings springs;
+    double slack[CK_SPRING_KINDS];    // N: k·L
+    double dt, resistance, weight[3]; // s; N·s/m and N on each particle, of drag and of what pulls on all
+    int terms;
+    uint32_t substeps; // of this call
+    int depth;         // passes over the rows that run interleaved
+    // tiles; v, between substeps of a call, is half a substep ahead
+    double *x, *v, *predicted;
+    double *a;    // acceleration at the end of a call, else the springs' forces from above so far
+    double *gain; // m/s a substep for each N: dt/m where free, else 0
+    double *paired, *far_paired;
+    double *state, *pairs;
+};
+
+// What a scene does not have is not in its loop.
+enum { CK_ROW_DAMPED = 1, CK_ROW_DRAGGED = 2, CK_ROW_SHEARED = 4, CK_ROW_BENT = 8 };
+
+#endif

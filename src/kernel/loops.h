@@ -1,0 +1,40 @@
+// The innermost loops of the row kernels, compiled once for each kind of vectors that processors have.
+//
+// Those for vectors of eight and of four doubles give the same bits: both fuse products and sums, and alike. The plain
+// ones, on x86 for processors older than 2013, cannot, and round otherwise.
+#ifndef CK_LOOPS_H
+#define CK_LOOPS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct ck_ExplicitCloth;
+struct ck_ProjectedCloth;
+struct ck_Wave;
+
+// A row's way to the first substep's forces; see spring_loop.h.
+typedef void ck_ExplicitStart(const struct ck_ExplicitCloth *cloth, int row);
+// One row's part of a substep; see spring_loop.h.
+typedef void ck_ExplicitRow(const struct ck_ExplicitCloth *cloth, int row, bool advances);
+// A wave of interleaved sweeps; see constraint_loop.h.
+typedef void ck_ProjectionWave(const struct ck_ProjectedCloth *cloth, const struct ck_Wave *wave);
+// Products with a sum each, as many as it can a second; returns how many there were.
+typedef long ck_Peak(long rounds, double *result);
+
+typedef struct ck_Loops {
+    const char *vectors; // what compilers call the processors that have them
+    int lanes;           // doubles of one
+    bool fuses;
+    ck_ExplicitStart *explicit_start;
+    ck_ExplicitRow *explicit_row;
+    ck_ProjectionWave *projection_wave;
+    ck_Peak *peak;
+} ck_Loops;
+
+// Those that this processor can run, the widest first; from their number on NULL.
+const ck_Loops *ck_loops_at(int index);
+
+// The widest of at most so many doubles; 0: of any. Those of two are there always.
+const ck_Loops *ck_loops_for(uint32_t lanes);
+
+#endif

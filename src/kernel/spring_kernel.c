@@ -1,0 +1,100 @@
+#include "spring_kernel.h"
+
+#include "spring_loop.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Pass 0 is the start of the first substep, each other one ends a substep and starts the next. The first row has no
+// springs from above; nor has the second, of those that bend.
+static void run_row(ck_ExplicitCloth *cloth, long pass, int row) {
+    if (pass == 0) {
+        cloth->loops->explicit_start(cloth, row);
+        return;
+    }
+    if (row == 0) memset(cloth->a, 0, 3 * sizeof(double) * (size_t)cloth->rows.stride);
+    cloth->loops->explicit_row(cloth, row, pass < cloth->substeps);
+}
+
+// A row reads those below it as the pass before left them.
+static int reach_of(const ck_ExplicitCloth *cloth) {
+    return cloth->terms & CK_ROW_BENT ? 2 : 1;
+}
+
+static void run_wave(void *state, long block, int wave) {
+    ck_ExplicitCloth *cloth = state;
+    for (int i = 0; i < cloth->depth; i++) {
+        const long pass = block * cloth->depth + i;
+        const int row = wave - reach_of(cloth) * i;
+        if (pass <= cloth->substeps && row >= 0 && row < cloth->rows.rows) run_row(cloth, pass, row);
+    }
+}
+
+void ck_explicit_step(ck_ExplicitCloth *cloth, uint32_t substeps, ck_Waves *waves) {
+    const long passes = substeps + 1L;
+    const int reach = reach_of(cloth);
+    cloth->substeps = substeps;
+    cloth->depth = ck_waves_depth(waves, passes, cloth->rows.rows, reach, 12 * sizeof(double) * cloth->rows.stride);
+    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (passes + cloth->depth - 1) / cloth->depth,
+                                       cloth->rows.rows + reach * (cloth->depth - 1), reach * cloth->depth});
+}
+
+void ck_explicit_read(const ck_ExplicitCloth *cloth, double *position, double *velocity) {
+    ck_rows_store(&cloth->rows, position, cloth->x);
+    ck_rows_store(&cloth->rows, velocity, cloth->v);
+}
+
+void ck_explicit_destroy(ck_ExplicitCloth *cloth) {
+    if (!cloth) return;
+    free(cloth->state);
+    free(cloth->pairs);
+    free(cloth);
+}
+
+static int terms_of(const ck_Model *model, const ck_RowSprings *springs) {
+    int terms = (springs->damping > 0 ? CK_ROW_DAMPED : 0) | (model->drag > 0 ? CK_ROW_DRAGGED : 0) |
+                (springs->rest[CK_SHEAR] > 0 ? CK_ROW_SHEARED : 0) | (springs->rest[CK_BEND] > 0 ? CK_ROW_BENT : 0);
+    // what bends has a loop that knows all else, with the strength 0 for what is not there
+    return terms & CK_ROW_BENT ? terms | CK_ROW_DAMPED | CK_ROW_DRAGGED : terms;
+}
+
+ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, const ck_Model *model,
+                             const ck_RowSprings *springs, double dt, const double *position, const double *velocity,
+                             const double *acceleration, const double *inverse_mass, ck_Error *error) {
+    ck_ExplicitCloth *cloth = calloc(1, sizeof *cloth);
+    if (!cloth) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *cloth = (ck_ExplicitCloth){.loops = loops,
+                                .rows = ck_rows_of(model),
+                                .springs = *springs,
+                                .dt = dt,
+                                .resistance = model->drag * model->mass[0]};
+    cloth->terms = terms_of(model, springs);
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
+        cloth->slack[kind] = springs->stiffness[kind] * springs->rest[kind];
+    const ck_Rows row = {.size = (size_t)cloth->rows.stride};
+    cloth->state = ck_rows_allocate(&cloth->rows, 13);
+    cloth->pairs = ck_rows_allocate(&row, 2);
+    if (!cloth->state || !cloth->pairs) {
+        ck_explicit_destroy(cloth);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    const size_t size = cloth->rows.size;
+    cloth->x = cloth->state;
+    cloth->v = cloth->state + 3 * size;
+    cloth->predicted = cloth->state + 6 * size;
+    cloth->a = cloth->state + 9 * size;
+    cloth->gain = cloth->state + 12 * size;
+    cloth->paired = cloth->pairs;
+    cloth->far_paired = cloth->pairs + row.size;
+    ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
+    ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
+    ck_rows_load(&cloth->rows, cloth->x, position);
+    ck_rows_load(&cloth->rows, cloth->v, velocity);
+    ck_rows_load(&cloth->rows, cloth->a, acceleration);
+    ck_model_field(model, 0, cloth->weight);
+    for (int axis = 0; axis < 3; axis++) cloth->weight[axis] *= model->mass[0];
+    for (int i = 0; i < model->particle_count; i++)
+        cloth->gain[ck_rows_at(&cloth->rows, i / model->columns, i % model->columns).single] = dt * inverse_mass[i];
+    *out = cloth;
+    return CK_OK;
+}

@@ -1,0 +1,55 @@
+# The walls. A folder is a static library, and its own folder is all that its users can include from: a header of a
+# folder that is not named is not found, and CMake refuses a circle.
+set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
+
+# A folder.
+#   SOURCES         one a line
+#   VECTOR_SOURCES  compiled once for each kind of vectors; they say CK_LOOP(name)
+#   USES            folders whose headers its own headers include
+#   USES_INSIDE     folders that only its sources include, so that its users do not see them
+#   LIBRARIES       others, for its sources
+# Headers in inside/ are for the folder itself and for its tests.
+function(clothcheck_layer name)
+  cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "SOURCES;VECTOR_SOURCES;USES;USES_INSIDE;LIBRARIES")
+  list(TRANSFORM LAYER_USES PREPEND ck_)
+  list(TRANSFORM LAYER_USES_INSIDE PREPEND ck_)
+  add_library(ck_${name} STATIC ${LAYER_SOURCES})
+  target_include_directories(ck_${name} PUBLIC . PRIVATE inside)
+  target_link_libraries(ck_${name} PUBLIC options ${LAYER_USES} PRIVATE ${LAYER_USES_INSIDE} ${LAYER_LIBRARIES})
+  if(LAYER_VECTOR_SOURCES)
+    clothcheck_vectors(${name})
+  endif()
+endfunction()
+
+# The kinds of vectors; the program chooses when it runs.
+set(VECTORS plain)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  list(APPEND VECTORS v3 v4)
+  # whatever CFLAGS say, so that each kind is what it is called
+  set(MACHINE_plain -march=x86-64 -mno-avx -mno-fma)
+  set(MACHINE_v3 -march=x86-64-v3)
+  set(MACHINE_v4 -march=x86-64-v4)
+endif()
+
+macro(clothcheck_vectors name)
+  if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+    target_compile_definitions(ck_${name} PRIVATE CK_HAS_X86_VECTORS)
+  endif()
+  foreach(vectors IN LISTS VECTORS)
+    set(objects ck_${name}_${vectors})
+    add_library(${objects} OBJECT ${LAYER_VECTOR_SOURCES})
+    target_include_directories(${objects} PRIVATE . inside)
+    target_link_libraries(${objects} PRIVATE options ${LAYER_USES} ${LAYER_USES_INSIDE})
+    target_compile_definitions(${objects} PRIVATE CK_VECTORS=${vectors}
+      CK_VECTORS_NAME="$<$<NOT:$<STREQUAL:${vectors},plain>>:x86-64->${vectors}")
+    # a root sets no error number
+    target_compile_options(${objects} PRIVATE ${MACHINE_${vectors}} -fno-math-errno)
+    target_sources(ck_${name} PRIVATE $<TARGET_OBJECTS:${objects}>)
+  endforeach()
+endmacro()
+
+# An engine: its folder, its source, and the ck_Engine constants that the source defines, in the order of the reports.
+function(clothcheck_engine name source)
+  target_sources(ck_${name} PRIVATE ${source})
+  set_property(GLOBAL APPEND PROPERTY CK_ENGINES ${ARGN})
+endfunction()

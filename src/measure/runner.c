@@ -1,0 +1,198 @@
+#include "runner.h"
+
+#include "clock.h"
+#include "statistics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What a child tells its parent, in shared memory.
+typedef struct Report {
+    ck_Status status;
+    ck_Error error;
+    ck_StepResult step;
+    ck_Settings used;
+    ck_Ledger ledger;
+    int frame_count; // complete frames, the start among them
+    double cpu, worst_step;
+    double foreseen;    // s that the run would have taken; 0: it was not given up
+    const char *remark; // a literal of the engine's, or NULL
+} Report;
+
+typedef struct Job {
+    const ck_Run *run;
+    Report *report;
+    int frames; // to step
+    const ck_Limits *limits;
+} Job;
+
+static void *create(const Job *job) {
+    void *state = NULL;
+    Report *report = job->report;
+    report->ledger.count = 0;
+    report->status = job->run->engine->create(&state, job->run->model, &job->run->wanted, &report->used,
+                                              &report->ledger, &report->error);
+    return state;
+}
+
+// After a twentieth of the time, and one frame at least, the rest can be foreseen.
+static bool is_hopeless(const Job *job) {
+    Report *report = job->report;
+    if (!job->limits->foresees || report->cpu < job->limits->seconds / 20) return false;
+    double foreseen = report->cpu / (report->frame_count - 1) * job->frames;
+    if (foreseen > 1.5 * job->limits->seconds) report->foreseen = foreseen;
+    return report->foreseen > 0;
+}
+
+static void measure(void *context) {
+    const Job *job = context;
+    const ck_Engine *engine = job->run->engine;
+    Report *report = job->report;
+    void *state = create(job);
+    if (report->status) return;
+    ck_engine_read(engine, state, &job->run->trajectory, 0);
+    report->frame_count = 1;
+    while (report->frame_count <= job->frames) {
+        double start = ck_process_cpu();
+        report->step = ck_engine_advance(engine, state, job->run->model, report->frame_count - 1);
+        report->cpu += ck_process_cpu() - start;
+        if (report->step) break;
+        ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
+        if (is_hopeless(job)) break;
+    }
+    if (engine->remark) report->remark = engine->remark(state);
+    engine->destroy(state);
+}
+
+static void time_frames(void *context) {
+    const Job *job = context;
+    const ck_Engine *engine = job->run->engine;
+    Report *report = job->report;
+    // warm up on a world of its own: code and allocator, not this world's state
+    void *state = create(job);
+    if (report->status) return;
+    for (int i = 0; i < job->frames && i < 3; i++) ck_engine_advance(engine, state, job->run->model, i);
+    engine->destroy(state);
+    state = create(job);
+    if (report->status) return;
+    for (int i = 0; i < job->frames; i++) {
+        double start = ck_process_cpu();
+        report->step = ck_engine_advance(engine, state, job->run->model, i);
+        double cpu = ck_process_cpu() - start;
+        report->cpu += cpu;
+        report->worst_step = fmax(report->worst_step, cpu);
+        if (report->step) break;
+    }
+    engine->destroy(state);
+}
+
+static const ck_RunStatus status_of_child[] = {
+    [CK_CHILD_DONE] = CK_RUN_OK,
+    [CK_CHILD_ABORTED] = CK_RUN_ABORTED,
+    [CK_CHILD_TIMED_OUT] = CK_RUN_TIMED_OUT,
+    [CK_CHILD_NO_MEMORY] = CK_RUN_OUT_OF_MEMORY,
+};
+
+// Turns how the child ended and what it reported into the run's status and reason.
+static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *child, const ck_Limits *limits) {
+    run->used = report->used;
+    run->ledger = report->ledger;
+    run->trajectory.frame_count = report->frame_count;
+    run->measured_cpu = report->cpu;
+    run->peak_rss_bytes = child->peak_rss_bytes;
+    run->remark = report->remark;
+    run->status = status_of_child[child->end];
+    double time = fmax(0, report->frame_count - 1) * run->model->step;
+    if (child->end != CK_CHILD_DONE) {
+        snprintf(run->reason, sizeof run->reason, "%s, at t = %g s", child->reason, time);
+    } else if (report->foreseen > 0) {
+        run->status = CK_RUN_TIMED_OUT;
+        snprintf(run->reason, sizeof run->reason, "given up at t = %g s: it would take %.3g s, and the limit is %g s",
+                 time, report->foreseen, limits->seconds);
+    } else if (report->status) {
+        run->status = report->status == CK_NO_MEMORY ? CK_RUN_OUT_OF_MEMORY : CK_RUN_REFUSED;
+        snprintf(run->reason, sizeof run->reason, "%s", report->error.message);
+    } else if (report->step == CK_STEP_NO_MEMORY) {
+        run->status = CK_RUN_OUT_OF_MEMORY;
+        snprintf(run->reason, sizeof run->reason, "the engine ran out of memory after t = %g s", time);
+    } else if (report->step == CK_STEP_DIVERGED) {
+        run->status = CK_RUN_DIVERGED;
+        snprintf(run->reason, sizeof run->reason, "left the finite numbers after t = %g s", time);
+    } else {
+        snprintf(run->reason, sizeof run->reason, "ran to t = %g s", time);
+    }
+}
+
+// True, with status and reason set, where the scene has a term that the engine lacks.
+static bool is_unsupported(ck_Run *run) {
+    unsigned missing = run->model->terms & ~run->engine->terms;
+    if (!missing) return false;
+    run->status = CK_RUN_UNSUPPORTED;
+    size_t used = (size_t)snprintf(run->reason, sizeof run->reason, "%s does not model", run->engine->name);
+    const char *separator = " ";
+    for (int bit = 0; bit < CK_TERM_COUNT; bit++) {
+        if (!(missing & (1u << bit))) continue;
+        used += (size_t)snprintf(run->reason + used, sizeof run->reason - used, "%s%s", separator, ck_term_names[bit]);
+        separator = ", ";
+    }
+    return true;
+}
+
+ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted,
+                         const ck_Limits *limits, ck_Error *error) {
+    *run = (ck_Run){.model = model, .engine = engine, .wanted = *wanted};
+    if (is_unsupported(run)) return CK_OK;
+    ck_Error why = {0};
+    if (ck_trajectory_create(&run->trajectory, model, &why)) {
+        run->status = CK_RUN_OUT_OF_MEMORY;
+        snprintf(run->reason, sizeof run->reason, "%s", why.message);
+        return CK_OK;
+    }
+    Report *report = ck_shared_allocate(sizeof *report);
+    if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_ChildResult child;
+    ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count, limits}, limits, error);
+    if (!status) conclude(run, report, &child, limits);
+    ck_shared_free(report, sizeof *report);
+    return status;
+}
+
+ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error) {
+    ck_Timing *timing = &run->timing;
+    if (run->trajectory.frame_count <= run->model->frame_count || timing->repeat_count == CK_MAX_REPEATS) return CK_OK;
+    if (!timing->frames) {
+        double fits = run->measured_cpu > 0 ? budget / run->measured_cpu : 1;
+        timing->frames = (int)fmax(1, floor(fmin(1, fits) * run->model->frame_count));
+    }
+    Report *report = ck_shared_allocate(sizeof *report);
+    if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_ChildResult child;
+    ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames, limits}, limits, error);
+    if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
+        timing->cpu[timing->repeat_count++] = report->cpu;
+        timing->worst_step = fmax(timing->worst_step, report->worst_step);
+    }
+    ck_shared_free(report, sizeof *report);
+    return status;
+}
+
+void ck_run_free(ck_Run *run) {
+    ck_trajectory_free(&run->trajectory);
+    *run = (ck_Run){0};
+}
+
+static double quantile(const ck_Timing *timing, double share) {
+    double sorted[CK_MAX_REPEATS];
+    memcpy(sorted, timing->cpu, sizeof *sorted * (size_t)timing->repeat_count);
+    return ck_quantile(sorted, timing->repeat_count, share);
+}
+
+double ck_timing_median(const ck_Timing *timing) {
+    return quantile(timing, 0.5);
+}
+
+double ck_timing_iqr(const ck_Timing *timing) {
+    return quantile(timing, 0.75) - quantile(timing, 0.25);
+}

@@ -1,0 +1,51 @@
+// Runs one engine on one model in a child process: once measured, and several times timed.
+#ifndef CK_RUNNER_H
+#define CK_RUNNER_H
+
+#include "engine.h"
+#include "process.h"
+#include "run_status.h"
+#include "trajectory.h"
+
+// The most timed repeats of one run.
+#define CK_MAX_REPEATS 99
+
+typedef struct ck_Timing {
+    int frames;                 // timed per repeat
+    double cpu[CK_MAX_REPEATS]; // s of the stepping thread, for those frames
+    int repeat_count;
+    double worst_step; // s of the slowest frame of any repeat
+} ck_Timing;
+
+typedef struct ck_Run {
+    const ck_Model *model;
+    const ck_Engine *engine;
+    ck_Settings wanted, used;
+    ck_RunStatus status;
+    char reason[600];   // never empty: also an ok run says why it is
+    const char *remark; // what the engine itself says of the run, a literal; NULL: nothing
+    ck_Ledger ledger;
+    ck_Trajectory trajectory;
+    double measured_cpu; // s of the measured pass
+    ck_Timing timing;
+    size_t peak_rss_bytes;
+} ck_Run;
+
+// The measured pass: fills trajectory, ledger, settings, status and reason.
+// Errors: CK_NO_MEMORY, CK_IO. How the engine fared is in run->status. Free with ck_run_free in any case.
+ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted,
+                         const ck_Limits *limits, ck_Error *error);
+
+// One timed repeat, in which nothing is read. Does nothing for a run that has no result to time.
+// Times all frames, or as many as fit into budget seconds by the measured pass, but at least one.
+// Errors: CK_NO_MEMORY, CK_IO.
+ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error);
+
+// Accepts a zeroed run.
+void ck_run_free(ck_Run *run);
+
+// Median, interquartile range and simulated time of the repeats; all NaN without any.
+double ck_timing_median(const ck_Timing *timing);
+double ck_timing_iqr(const ck_Timing *timing);
+
+#endif

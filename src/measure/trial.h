@@ -1,0 +1,40 @@
+// One engine at one setting on one scene, run, judged and reduced to the numbers that studies weigh or compare.
+#ifndef CK_TRIAL_H
+#define CK_TRIAL_H
+
+#include "metric.h"
+#include "runner.h"
+
+typedef struct ck_Trial {
+    ck_RunStatus status;
+    char reason[256];
+    ck_Settings used;
+    double time_step;      // s
+    double error;          // distance to the truth's positions, rms over particles and frames / size
+    double sag_error;      // at the end, |sag − truth|
+    double stretch_error;  // at the end, |stretch_max − truth|
+    double cpu, cpu_range; // s, median and interquartile range
+} ck_Trial;
+
+// Runs and judges; times it repeats times, 0: the measured pass alone. What a failed run lacks is NaN.
+//   against  NULL, or positions to measure error against in place of the truth's, of the same model's frames
+// Errors: CK_NO_MEMORY, CK_IO.
+ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Reference *truth, const ck_Trajectory *against,
+                       const ck_Engine *engine, const ck_Settings *wanted, int repeats, const ck_Limits *limits,
+                       ck_Error *error);
+
+// All metrics of one run.
+typedef struct ck_Measurement {
+    ck_RunStatus status;
+    char reason[256];
+    double cpu, time_step;             // s of the measured pass, s
+    double values[CK_METRIC_CAPACITY]; // in the order of the metric table; NaN where one does not apply
+} ck_Measurement;
+
+// Runs, judges and measures. Errors: CK_NO_MEMORY, CK_IO.
+//   reference  the truth's; keep  NULL, or where the run goes, for the caller to free with ck_run_free
+ck_Status ck_measurement_take(ck_Measurement *measurement, const ck_Model *model, const ck_Reference *reference,
+                              const ck_Engine *engine, const ck_Settings *wanted, const ck_Limits *limits, ck_Run *keep,
+                              ck_Error *error);
+
+#endif

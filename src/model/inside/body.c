@@ -1,0 +1,298 @@
+#include "body.h"
+
+#include "random.h"
+#include "vector.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+ck_Status ck_model_unit(double *out, const double *from, const ck_Scene *scene, const char *path, ck_Error *error) {
+    double length = ck_length(from);
+    if (!(length > 0) || !isfinite(length))
+        return ck_scene_fail(scene, path, error, "%s has no direction; give a vector of any length above 0", path);
+    for (int axis = 0; axis < 3; axis++) out[axis] = from[axis] / length;
+    return CK_OK;
+}
+
+static ck_Status allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
+                          ck_Error *error) {
+    if (particles < 1 || particles > CK_SCENE_MAX_PARTICLES)
+        return ck_scene_fail(scene, body, error, "%s asks for %.0f particles; it must be 1 to %d", body, particles,
+                             CK_SCENE_MAX_PARTICLES);
+    size_t count = (size_t)particles;
+    model->particle_count = (int)particles;
+    model->position = calloc(3 * count, sizeof(double));
+    model->velocity = calloc(3 * count, sizeof(double));
+    model->mass = calloc(count, sizeof(double));
+    model->pinned = calloc(count, sizeof(bool));
+    model->released = calloc(count, sizeof(bool));
+    model->springs = calloc((size_t)springs + 1, sizeof(ck_Spring));
+    bool whole =
+        model->position && model->velocity && model->mass && model->pinned && model->released && model->springs;
+    return whole ? CK_OK : CK_NO_MEMORY;
+}
+
+// adds a spring unless its stiffness is 0, which models none
+static void add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, int b, double length,
+                       ck_SpringKind kind) {
+    const double stiffness[CK_SPRING_KINDS] = {springs->stiffness, springs->shear, springs->bend};
+    bool bar = springs->rigid && (kind == CK_STRUCTURAL || stiffness[kind] > 0);
+    if (!bar && !(stiffness[kind] > 0)) return;
+    model->springs[model->spring_count++] = (ck_Spring){.a = a,
+                                                        .b = b,
+                                                        .rest = length / (1 + springs->prestretch),
+                                                        .stiffness = bar ? INFINITY : stiffness[kind],
+                                                        .damping = springs->damping,
+                                                        .kind = kind};
+}
+
+static const double origin_default[3] = {0, 0, 0}, across_default[3] = {1, 0, 0}, down_default[3] = {0, -1, 0};
+
+static const double *or_default(const double *given, const double *fallback) {
+    return given ? given : fallback;
+}
+
+static ck_Status build_rope(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneRope *rope = scene->file->rope;
+    double along[3];
+    ck_Status status = ck_model_unit(along, or_default(rope->along, down_default), scene, "rope.along", error);
+    if (!status) status = allocate(model, scene, "rope", rope->particles, 2.0 * rope->particles, error);
+    if (status) return status;
+    for (int i = 0; i < model->particle_count; i++) {
+        memcpy(model->position + 3 * i, or_default(rope->origin, origin_default), 3 * sizeof(double));
+        ck_add_scaled(model->position + 3 * i, rope->spacing * i, along);
+        model->mass[i] = rope->mass / rope->particles;
+    }
+    model->mass[model->particle_count - 1] += rope->end_mass;
+    model->body = CK_ROPE;
+    model->spacing = rope->spacing;
+    model->size = rope->particles > 1 ? rope->spacing * (rope->particles - 1) : rope->spacing;
+    const ck_SceneSprings *springs = scene->file->springs;
+    for (int i = 1; i < model->particle_count && springs; i++)
+        add_spring(model, springs, i - 1, i, rope->spacing, CK_STRUCTURAL);
+    for (int i = 2; i < model->particle_count && springs; i++)
+        add_spring(model, springs, i - 2, i, 2 * rope->spacing, CK_BEND);
+    return CK_OK;
+}
+
+// the springs that start at a node, towards growing row and column
+static const struct {
+    int row, column;
+    ck_SpringKind kind;
+} cloth_springs[] = {
+    {0, 1, CK_STRUCTURAL}, {1, 0, CK_STRUCTURAL}, {1, 1, CK_SHEAR}, {1, -1, CK_SHEAR}, {0, 2, CK_BEND}, {2, 0, CK_BEND},
+};
+#define CLOTH_SPRINGS (sizeof cloth_springs / sizeof *cloth_springs)
+
+static void add_cloth_springs(ck_Model *model, const ck_SceneCloth *cloth, const ck_SceneSprings *springs) {
+    int rows = (int)cloth->rows, columns = (int)cloth->columns;
+    for (size_t s = 0; s < CLOTH_SPRINGS; s++) {
+        double length = cloth->spacing * hypot(cloth_springs[s].row, cloth_springs[s].column);
+        for (int row = 0; row < rows; row++)
+            for (int column = 0; column < columns; column++) {
+                int to_row = row + cloth_springs[s].row, to_column = column + cloth_springs[s].column;
+                if (to_row >= rows || to_column >= columns || to_column < 0) continue;
+                add_spring(model, springs, row * columns + column, to_row * columns + to_column, length,
+                           cloth_springs[s].kind);
+            }
+    }
+}
+
+static ck_Status build_cloth(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneCloth *cloth = scene->file->cloth;
+    double across[3], down[3];
+    ck_Status status = ck_model_unit(across, or_default(cloth->across, across_default), scene, "cloth.across", error);
+    if (!status) status = ck_model_unit(down, or_default(cloth->down, down_default), scene, "cloth.down", error);
+    if (status) return status;
+    if (fabs(ck_dot(across, down)) > 1e-9)
+        return ck_scene_fail(scene, "cloth", error, "cloth.across and cloth.down must be at right angles");
+    double particles = (double)cloth->rows * cloth->columns;
+    status = allocate(model, scene, "cloth", particles, CLOTH_SPRINGS * particles, error);
+    if (status) return status;
+    for (int i = 0; i < model->particle_count; i++) {
+        double *position = model->position + 3 * i;
+        memcpy(position, or_default(cloth->origin, origin_default), 3 * sizeof(double));
+        ck_add_scaled(position, cloth->spacing * (i % (int)cloth->columns), across);
+        ck_add_scaled(position, cloth->spacing * (i / (int)cloth->columns), down);
+        model->mass[i] = cloth->mass / particles;
+    }
+    model->body = CK_CLOTH;
+    model->columns = (int)cloth->columns;
+    model->spacing = cloth->spacing;
+    model->size = cloth->spacing * fmax(1, fmax(cloth->rows, cloth->columns) - 1);
+    if (scene->file->springs) add_cloth_springs(model, cloth, scene->file->springs);
+    return CK_OK;
+}
+
+static ck_Status check_bar(const ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
+    const uint32_t *bar = scene->file->network->bars[index];
+    char path[40];
+    snprintf(path, sizeof path, "network.bars[%u]", index);
+    for (int end = 0; end < 2; end++)
+        if (bar[end] >= (uint32_t)model->particle_count)
+            return ck_scene_fail(scene, path, error, "bar to node %u, which does not exist; the nodes are 0 to %d",
+                                 bar[end], model->particle_count - 1);
+    if (bar[0] == bar[1])
+        return ck_scene_fail(scene, path, error, "bar from node %u to itself; a bar joins two nodes", bar[0]);
+    double length = ck_distance(model->position + 3 * bar[0], model->position + 3 * bar[1]);
+    if (!(length > 0))
+        return ck_scene_fail(scene, path, error,
+                             "bar between nodes %u and %u, which are at the same place; move one of them", bar[0],
+                             bar[1]);
+    return CK_OK;
+}
+
+static ck_Status build_bars(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneNetwork *network = scene->file->network;
+    const ck_SceneSprings *springs = scene->file->springs;
+    if (network->bars_count && !(springs && (springs->rigid || springs->stiffness > 0)))
+        return ck_scene_fail(scene, "network.bars", error,
+                             "bars need springs: give springs.stiffness, or springs.rigid: true");
+    model->spacing = network->bars_count ? INFINITY : model->size;
+    for (uint32_t i = 0; i < network->bars_count; i++) {
+        ck_Status status = check_bar(model, scene, i, error);
+        if (status) return status;
+        int a = (int)network->bars[i][0], b = (int)network->bars[i][1];
+        double length = ck_distance(model->position + 3 * a, model->position + 3 * b);
+        add_spring(model, springs, a, b, length, CK_STRUCTURAL);
+        model->spacing = fmin(model->spacing, length);
+    }
+    return CK_OK;
+}
+
+static ck_Status build_network(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneNetwork *network = scene->file->network;
+    ck_Status status = allocate(model, scene, "network", network->nodes_count, network->bars_count, error);
+    if (status) return status;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int i = 0; i < model->particle_count; i++) {
+        memcpy(model->position + 3 * i, network->nodes[i].at, 3 * sizeof(double));
+        model->mass[i] = network->nodes[i].mass;
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = fmin(low[axis], network->nodes[i].at[axis]);
+            high[axis] = fmax(high[axis], network->nodes[i].at[axis]);
+        }
+    }
+    model->body = CK_NETWORK;
+    model->size = ck_distance(low, high);
+    if (!(model->size > 0)) model->size = 1; // a single node has no extent of its own
+    return build_bars(model, scene, error);
+}
+
+// Some direction at right angles to a line, [3].
+static void across_line(double *out, const double *line) {
+    int least = fabs(line[0]) <= fabs(line[1]) ? 0 : 1;
+    if (fabs(line[2]) < fabs(line[least])) least = 2;
+    double axis[3] = {least == 0, least == 1, least == 2};
+    ck_cross(out, line, axis);
+}
+
+// Out of the plane of three nodes that are far apart: that of all, where they have one. Towards growing z, or y, or x.
+static void out_of_network(double *normal, const ck_Model *model) {
+    double line[3] = {0, 0, 0}, to[3], cross[3], farthest = 0;
+    for (int i = 1; i < model->particle_count; i++) {
+        ck_subtract(to, model->position + 3 * i, model->position);
+        if (ck_length(to) > ck_length(line)) memcpy(line, to, sizeof line);
+    }
+    if (!(ck_length(line) > 0)) line[0] = 1;
+    across_line(normal, line);
+    for (int i = 1; i < model->particle_count; i++) {
+        ck_subtract(to, model->position + 3 * i, model->position);
+        ck_cross(cross, line, to);
+        if (ck_length(cross) <= fmax(farthest, 1e-9 * ck_dot(line, line))) continue;
+        farthest = ck_length(cross);
+        memcpy(normal, cross, sizeof cross);
+    }
+    int axis = fabs(normal[2]) > 1e-9 * ck_length(normal) ? 2 : fabs(normal[1]) > 1e-9 * ck_length(normal) ? 1 : 0;
+    for (int i = 0; i < 3 && normal[axis] < 0; i++) to[i] = -normal[i];
+    if (normal[axis] < 0) memcpy(normal, to, sizeof to);
+}
+
+// The unit vector along which noise moves particles: out of the plane of the body, or across its line.
+static void out_of_plane(double *normal, const ck_Model *model, const ck_SceneFile *file) {
+    const double *across = across_default, *down = down_default;
+    if (file->cloth) {
+        ck_cross(normal, or_default(file->cloth->across, across), or_default(file->cloth->down, down));
+    } else if (file->rope) {
+        across_line(normal, or_default(file->rope->along, down));
+    } else {
+        out_of_network(normal, model);
+    }
+    double length = ck_length(normal);
+    for (int axis = 0; axis < 3; axis++) normal[axis] /= length;
+}
+
+void ck_model_add_noise(ck_Model *model, const ck_Scene *scene) {
+    const ck_SceneFile *file = scene->file;
+    if (!file->noise) return;
+    double normal[3];
+    out_of_plane(normal, model, file);
+    ck_Random random = ck_random_seed(file->noise->seed);
+    for (int i = 0; i < model->particle_count; i++) {
+        double offset = file->noise->amplitude * (2 * ck_random_unit(&random) - 1);
+        if (!model->pinned[i]) ck_add_scaled(model->position + 3 * i, offset, normal);
+    }
+}
+
+ck_Status ck_model_build_body(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    if (scene->file->cloth) return build_cloth(model, scene, error);
+    if (scene->file->rope) return build_rope(model, scene, error);
+    return build_network(model, scene, error);
+}
+
+// a rectangle of rows and columns, both ends included; −1 counts from the end
+static const struct {
+    const char *name;
+    int row_from, row_to, column_from, column_to;
+} cloth_pins[] = {
+    {"top_left", 0, 0, 0, 0},         {"top_right", 0, 0, -1, -1},   {"bottom_left", -1, -1, 0, 0},
+    {"bottom_right", -1, -1, -1, -1}, {"top_edge", 0, 0, 0, -1},     {"bottom_edge", -1, -1, 0, -1},
+    {"left_edge", 0, -1, 0, 0},       {"right_edge", 0, -1, -1, -1},
+};
+
+static int from_end(int index, int count) {
+    return index < 0 ? count + index : index;
+}
+
+static void choose_rectangle(int *chosen, int *count, size_t pin, int rows, int columns) {
+    for (int row = from_end(cloth_pins[pin].row_from, rows); row <= from_end(cloth_pins[pin].row_to, rows); row++)
+        for (int column = from_end(cloth_pins[pin].column_from, columns);
+             column <= from_end(cloth_pins[pin].column_to, columns); column++)
+            chosen[(*count)++] = row * columns + column;
+}
+
+static ck_Status fail_pin(const ck_Model *model, const ck_Scene *scene, const char *pin, const char *path,
+                          ck_Error *error) {
+    const ck_SceneCloth *cloth = scene->file->cloth;
+    if (cloth)
+        return ck_scene_fail(scene, path, error,
+                             "pin %s is not on the cloth; give a corner (top_left …), an edge (top_edge …), row:column "
+                             "up to %u:%u, or a number up to %d",
+                             pin, cloth->rows - 1, cloth->columns - 1, model->particle_count - 1);
+    return ck_scene_fail(scene, path, error, "pin %s is not on the %s; give first, last, or a number up to %d", pin,
+                         scene->file->rope ? "rope" : "network", model->particle_count - 1);
+}
+
+ck_Status ck_model_resolve_pin(int *chosen, int *count, const ck_Model *model, const ck_Scene *scene, const char *pin,
+                               const char *path, ck_Error *error) {
+    const ck_SceneCloth *cloth = scene->file->cloth;
+    *count = 0;
+    if (cloth)
+        for (size_t i = 0; i < sizeof cloth_pins / sizeof *cloth_pins; i++)
+            if (!strcmp(pin, cloth_pins[i].name))
+                choose_rectangle(chosen, count, i, (int)cloth->rows, (int)cloth->columns);
+    if (!cloth && !strcmp(pin, "first")) chosen[(*count)++] = 0;
+    if (!cloth && !strcmp(pin, "last")) chosen[(*count)++] = model->particle_count - 1;
+
+    // row:column or a number, with nothing behind it
+    unsigned row, column;
+    int used = 0;
+    bool digits = pin[0] && strspn(pin, "0123456789:") == strlen(pin);
+    if (digits && cloth && sscanf(pin, "%9u:%9u%n", &row, &column, &used) == 2 && !pin[used] && row < cloth->rows &&
+        column < cloth->columns)
+        chosen[(*count)++] = (int)(row * cloth->columns + column);
+    if (digits && sscanf(pin, "%9u%n", &row, &used) == 1 && !pin[used] && row < (unsigned)model->particle_count)
+        chosen[(*count)++] = (int)row;
+    return *count ? CK_OK : fail_pin(model, scene, pin, path, error);
+}

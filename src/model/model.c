@@ -1,0 +1,315 @@
+#include "model.h"
+
+#include "body.h"
+#include "collider.h"
+#include "scene.h"
+#include "vector.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const ck_term_names[CK_TERM_COUNT] = {
+    "springs", "rigid bars",     "spring damping", "gravity", "force",
+    "drag",    "start velocity", "plane",          "sphere",  "release",
+};
+
+const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness", "bend stiffness"};
+
+static ck_Status copy_text(char **out, const char *text) {
+    *out = text ? strdup(text) : NULL;
+    return text && !*out ? CK_NO_MEMORY : CK_OK;
+}
+
+static ck_Status copy_labels(ck_Model *model, const ck_SceneFile *file) {
+    ck_Status status = copy_text(&model->name, file->name);
+    if (!status) status = copy_text(&model->truth, file->truth);
+    model->measure = calloc(file->measure_count + 1, sizeof *model->measure);
+    if (!model->measure) return CK_NO_MEMORY;
+    for (uint32_t i = 0; i < file->measure_count && !status; i++) {
+        status = copy_text(&model->measure[i], file->measure[i]);
+        model->measure_count++;
+    }
+    return status;
+}
+
+// Whether the step is a whole number of frames a second, in as many digits as people write.
+static bool is_near_fps(const ck_SceneTime *time) {
+    double fps = 1 / time->step;
+    return fabs(fps - round(fps)) < 1e-4 * fps && fmod(time->duration * round(fps), 1) == 0;
+}
+
+static ck_Status set_time(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneTime *time = &scene->file->time;
+    double ratio = time->duration / time->step, frames = floor(ratio + 0.5);
+    if (frames < 1 || frames > 1e6 || fabs(ratio - frames) > 1e-6 * frames)
+        return ck_scene_fail(scene, "time", error,
+                             "duration / step is %.9g frames; it must be a whole number from 1 to 1000000%s", ratio,
+                             is_near_fps(time) ? "; fps in place of step says 1/60 s and its like exactly" : "");
+    model->duration = time->duration;
+    model->step = time->step;
+    model->frame_count = (int)frames;
+    return CK_OK;
+}
+
+static ck_Status set_pins(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneFile *file = scene->file;
+    int *chosen = malloc(sizeof *chosen * (size_t)model->particle_count);
+    ck_Status status = chosen ? CK_OK : CK_NO_MEMORY;
+    for (uint32_t i = 0; i < file->pins_count && !status; i++) {
+        char path[32];
+        snprintf(path, sizeof path, "pins[%u]", i);
+        int count = 0;
+        status = ck_model_resolve_pin(chosen, &count, model, scene, file->pins[i], path, error);
+        for (int j = 0; j < count; j++) model->pinned[chosen[j]] = true;
+    }
+    free(chosen);
+    for (int i = 0; i < model->particle_count; i++) model->pin_count += model->pinned[i];
+    if (!status && model->truth && !strcmp(model->truth, "equilibrium") && !model->pin_count)
+        return ck_scene_fail(
+            scene, "truth", error,
+            "truth equilibrium needs pins: without them the body falls for ever; add pins or another truth");
+    return status;
+}
+
+static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
+    const ck_SceneRelease *from = &scene->file->release[index];
+    ck_Release *release = &model->releases[model->release_count++];
+    if (from->at >= model->duration) {
+        char path[32];
+        snprintf(path, sizeof path, "release[%u].at", index);
+        return ck_scene_fail(scene, path, error, "the scene ends at %g s; let pins go before", model->duration);
+    }
+    release->at = from->at;
+    release->frame = (int)fmin(ceil(from->at / model->step * (1 - 1e-12)), model->frame_count);
+    release->particles = malloc(sizeof *release->particles * (size_t)model->particle_count * from->pins_count);
+    if (!release->particles) return CK_NO_MEMORY;
+    for (uint32_t i = 0; i < from->pins_count; i++) {
+        char path[48];
+        snprintf(path, sizeof path, "release[%u].pins[%u]", index, i);
+        int count = 0, *chosen = release->particles + release->particle_count;
+        ck_Status status = ck_model_resolve_pin(chosen, &count, model, scene, from->pins[i], path, error);
+        if (status) return status;
+        for (int j = 0; j < count; j++)
+            if (!model->pinned[chosen[j]])
+                return ck_scene_fail(scene, path, error,
+                                     "%s is not pinned, so that it cannot be released; add it to pins", from->pins[i]);
+        for (int j = 0; j < count; j++) {
+            if (model->released[chosen[j]])
+                return ck_scene_fail(scene, path, error, "%s is already let go; name it once", from->pins[i]);
+            model->released[chosen[j]] = true;
+        }
+        release->particle_count += count;
+    }
+    return CK_OK;
+}
+
+static ck_Status set_releases(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    model->releases = calloc(scene->file->release_count + 1, sizeof *model->releases);
+    if (!model->releases) return CK_NO_MEMORY;
+    ck_Status status = CK_OK;
+    for (uint32_t i = 0; i < scene->file->release_count && !status; i++) status = set_release(model, scene, i, error);
+    return status;
+}
+
+static ck_Status set_collider(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
+    const ck_SceneCollider *from = &scene->file->colliders[index];
+    ck_Collider *collider = &model->colliders[model->collider_count++];
+    if (from->sphere) {
+        *collider = (ck_Collider){.shape = CK_SPHERE,
+                                  .radius = from->sphere->radius,
+                                  .restitution = from->sphere->restitution,
+                                  .friction = from->sphere->friction};
+        memcpy(collider->point, from->sphere->center, sizeof collider->point);
+        return CK_OK;
+    }
+    *collider =
+        (ck_Collider){.shape = CK_PLANE, .restitution = from->plane->restitution, .friction = from->plane->friction};
+    memcpy(collider->point, from->plane->point, sizeof collider->point);
+    char path[48];
+    snprintf(path, sizeof path, "colliders[%u].plane.normal", index);
+    return ck_model_unit(collider->normal, from->plane->normal, scene, path, error);
+}
+
+static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    model->colliders = calloc(scene->file->colliders_count + 1, sizeof *model->colliders);
+    if (!model->colliders) return CK_NO_MEMORY;
+    ck_Status status = CK_OK;
+    for (uint32_t i = 0; i < scene->file->colliders_count && !status; i++)
+        status = set_collider(model, scene, i, error);
+    return status;
+}
+
+// What is said of springs is modelled, or it is an error: nothing is left out in silence. A body too small to have
+// springs of a kind is none.
+static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneSprings *springs = scene->file->springs;
+    if (!springs) return CK_OK;
+    bool is_none = !(springs->stiffness > 0) && !(springs->shear > 0) && !(springs->bend > 0) && !springs->rigid;
+    const struct {
+        const char *path;
+        double value;
+        bool is_idle;
+        const char *why;
+    } rules[] = {
+        {"springs.stiffness", springs->stiffness, springs->rigid, "bars that are rigid have none; keep one of the two"},
+        {"springs.damping", springs->damping, springs->rigid, "rigid bars do not stretch, so that it damps nothing"},
+        {"springs.shear", springs->shear, model->body != CK_CLOTH,
+         "only a cloth has diagonals; add bars to a network, or leave it out"},
+        {"springs.bend", springs->bend, model->body == CK_NETWORK,
+         "only a cloth and a rope bend; add bars to a network, or leave it out"},
+        {"springs.damping", springs->damping, is_none, "there is no spring; give a stiffness, or leave it out"},
+        {"springs.prestretch", springs->prestretch, is_none, "there is no spring; give a stiffness, or leave it out"},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
+        if (rules[i].value > 0 && rules[i].is_idle)
+            return ck_scene_fail(scene, rules[i].path, error, "%s has nothing to act on: %s", rules[i].path,
+                                 rules[i].why);
+    return CK_OK;
+}
+
+// A pin that stays may be inside a collider; what is free there, or let go, would be thrown out.
+static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    for (int i = 0; i < model->collider_count; i++) {
+        char path[32];
+        snprintf(path, sizeof path, "colliders[%d]", i);
+        for (int j = 0; j < model->particle_count; j++) {
+            double normal[3], gap = ck_collider_gap(&model->colliders[i], model->position + 3 * j, normal);
+            if (!ck_model_is_held(model, j) && gap < -1e-9 * model->spacing)
+                return ck_scene_fail(scene, path, error,
+                                     "particle %d starts %g m inside this collider; move the body or the collider", j,
+                                     -gap);
+        }
+    }
+    return CK_OK;
+}
+
+static void set_fields(ck_Model *model, const ck_SceneFile *file) {
+    if (file->gravity) memcpy(model->gravity, file->gravity, sizeof model->gravity);
+    if (file->force) memcpy(model->force, file->force, sizeof model->force);
+    model->drag = file->drag;
+    for (int i = 0; i < model->particle_count; i++)
+        if (file->velocity && !model->pinned[i]) memcpy(model->velocity + 3 * i, file->velocity, 3 * sizeof(double));
+}
+
+// Numbers that are each fine may still make a body that is not.
+static ck_Status check_finite(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    bool fine = isfinite(model->size * model->size) && isfinite(model->size * ck_length(model->gravity));
+    for (int i = 0; i < model->particle_count; i++) {
+        fine &= isfinite(ck_dot(model->position + 3 * i, model->position + 3 * i)) && isfinite(1 / model->mass[i]);
+        fine &= isfinite(ck_dot(model->velocity + 3 * i, model->velocity + 3 * i)) &&
+                isfinite(ck_length(model->force) / model->mass[i]);
+    }
+    if (fine) return CK_OK;
+    return ck_scene_fail(
+        scene, "", error,
+        "its numbers are too large or too small to be computed with; use metres, kilograms and seconds");
+}
+
+static unsigned terms_in_use(const ck_Model *model, const ck_SceneFile *file) {
+    unsigned terms = 0;
+    if (model->spring_count) terms |= CK_TERM_SPRINGS;
+    if (model->spring_count && file->springs->rigid) terms |= CK_TERM_RIGID;
+    if (model->spring_count && file->springs->damping > 0) terms |= CK_TERM_DAMPING;
+    if (ck_length(model->gravity) > 0) terms |= CK_TERM_GRAVITY;
+    if (ck_length(model->force) > 0) terms |= CK_TERM_FORCE;
+    if (model->drag > 0) terms |= CK_TERM_DRAG;
+    if (file->velocity && ck_length(file->velocity) > 0) terms |= CK_TERM_VELOCITY;
+    for (int i = 0; i < model->collider_count; i++)
+        terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
+    if (model->release_count) terms |= CK_TERM_RELEASE;
+    return terms;
+}
+
+ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    *model = (ck_Model){0};
+    if (error) error->message[0] = 0;
+    ck_Status status = copy_labels(model, scene->file);
+    if (!status) status = set_time(model, scene, error);
+    if (!status) status = ck_model_build_body(model, scene, error);
+    if (!status) status = check_springs(model, scene, error);
+    if (!status) status = set_pins(model, scene, error);
+    if (!status) status = set_releases(model, scene, error);
+    if (!status) status = set_colliders(model, scene, error);
+    if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
+    if (status) return status;
+    ck_model_add_noise(model, scene);
+    status = check_outside(model, scene, error);
+    if (status) return status;
+    set_fields(model, scene->file);
+    model->terms = terms_in_use(model, scene->file);
+    return check_finite(model, scene, error);
+}
+
+void ck_model_free(ck_Model *model) {
+    for (int i = 0; i < model->release_count; i++) free(model->releases[i].particles);
+    for (int i = 0; i < model->measure_count; i++) free(model->measure[i]);
+    free(model->releases);
+    free(model->measure);
+    free(model->colliders);
+    free(model->springs);
+    free(model->position);
+    free(model->velocity);
+    free(model->mass);
+    free(model->pinned);
+    free(model->released);
+    free(model->truth);
+    free(model->name);
+    *model = (ck_Model){0};
+}
+
+void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor) {
+    for (int i = 0; i < copy->spring_count; i++) {
+        springs[i] = copy->springs[i];
+        springs[i].stiffness *= factor;
+    }
+    copy->springs = springs;
+}
+
+bool ck_model_is_held(const ck_Model *model, int particle) {
+    return model->pinned[particle] && !model->released[particle];
+}
+
+double ck_model_inverse_mass(const ck_Model *model, int particle) {
+    return model->pinned[particle] ? 0 : 1 / model->mass[particle];
+}
+
+double ck_model_free_mass(const ck_Model *model) {
+    double sum = 0;
+    for (int i = 0; i < model->particle_count; i++)
+        if (!model->pinned[i]) sum += model->mass[i];
+    return sum;
+}
+
+const ck_Spring *ck_model_spring_of_kind(const ck_Model *model, ck_SpringKind kind) {
+    const ck_Spring *found = NULL;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        if (spring->kind != kind) continue;
+        if (!model->pinned[spring->a] && !model->pinned[spring->b]) return spring;
+        if (!found) found = spring;
+    }
+    return found;
+}
+
+void ck_model_field(const ck_Model *model, int particle, double *acceleration) {
+    double push[3];
+    if (!(model->terms & CK_TERM_FORCE)) {
+        memcpy(acceleration, model->gravity, 3 * sizeof(double));
+        return;
+    }
+    for (int axis = 0; axis < 3; axis++) push[axis] = model->force[axis] / model->mass[particle];
+    for (int axis = 0; axis < 3; axis++) acceleration[axis] = model->gravity[axis] + push[axis];
+    // a force that carries the weight leaves nothing, not the rounding of it
+    if (ck_length(acceleration) <= 1e-14 * ck_length(push)) memset(acceleration, 0, 3 * sizeof(double));
+}
+
+void ck_model_mean_field(const ck_Model *model, double *acceleration) {
+    double mass = ck_model_free_mass(model), field[3];
+    memset(acceleration, 0, 3 * sizeof(double));
+    for (int i = 0; i < model->particle_count; i++) {
+        ck_model_field(model, i, field);
+        if (!model->pinned[i]) ck_add_scaled(acceleration, model->mass[i] / mass, field);
+    }
+}

@@ -1,0 +1,126 @@
+// A scene compiled into engine-neutral SI arrays. Immutable once built.
+#ifndef CK_MODEL_H
+#define CK_MODEL_H
+
+#include "status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct ck_Scene;
+
+// What a scene models; an engine names the terms it supports. Absent terms cost nothing.
+typedef enum ck_Term {
+    CK_TERM_SPRINGS = 1 << 0,
+    CK_TERM_RIGID = 1 << 1,   // springs are bars of fixed length
+    CK_TERM_DAMPING = 1 << 2, // along springs
+    CK_TERM_GRAVITY = 1 << 3,
+    CK_TERM_FORCE = 1 << 4, // the same on each particle
+    CK_TERM_DRAG = 1 << 5,
+    CK_TERM_VELOCITY = 1 << 6, // at the start
+    CK_TERM_PLANE = 1 << 7,
+    CK_TERM_SPHERE = 1 << 8,
+    CK_TERM_RELEASE = 1 << 9, // pins let go while it runs
+    CK_TERM_COUNT = 10,
+} ck_Term;
+
+// The name of the term in bit order, as a scene's author knows it.
+extern const char *const ck_term_names[CK_TERM_COUNT];
+
+typedef enum ck_SpringKind { CK_STRUCTURAL, CK_SHEAR, CK_BEND, CK_SPRING_KINDS } ck_SpringKind;
+extern const char *const ck_stiffness_names[CK_SPRING_KINDS]; // "structural stiffness" …
+
+typedef struct ck_Spring {
+    int a, b;         // particles
+    double rest;      // m
+    double stiffness; // N/m; INFINITY for a rigid bar
+    double damping;   // N·s/m along the spring
+    ck_SpringKind kind;
+} ck_Spring;
+
+typedef enum ck_ColliderShape { CK_PLANE, CK_SPHERE } ck_ColliderShape;
+
+typedef struct ck_Collider {
+    ck_ColliderShape shape;
+    double point[3];  // m: a point of the plane, or the sphere's centre
+    double normal[3]; // unit, plane only
+    double radius;    // m, sphere only
+    double restitution, friction;
+} ck_Collider;
+
+typedef struct ck_Release {
+    double at; // s
+    int frame; // the first at or after that time: pins are let go between frames
+    int *particles;
+    int particle_count;
+} ck_Release;
+
+typedef enum ck_Body { CK_CLOTH, CK_ROPE, CK_NETWORK } ck_Body;
+
+typedef struct ck_Model {
+    char *name;
+    ck_Body body;
+    int particle_count;
+    int columns;      // of a cloth: particle = row*columns + column; else 0
+    double *position; // [3*n] m at the start
+    double *velocity; // [3*n] m/s at the start, 0 where pinned
+    double *mass;     // [n] kg
+    bool *pinned;     // [n] at the start
+    bool *released;   // [n] at some time
+    int pin_count;
+    ck_Spring *springs;
+    int spring_count;
+    double gravity[3], force[3]; // m/s², N on each particle
+    double drag;                 // 1/s
+    ck_Collider *colliders;
+    int collider_count;
+    ck_Release *releases;
+    int release_count;
+    unsigned terms;        // ck_Term bits in use
+    double size;           // m: rope's rest length, cloth's longer rest side, network's bounding box diagonal
+    double spacing;        // m: between neighbours; of a network its shortest bar
+    double duration, step; // s
+    int frame_count;       // frames after the start
+    char *truth;           // as the scene names it; NULL: none
+    char **measure;        // names of the metrics the scene asks for
+    int measure_count;     // 0: every metric
+} ck_Model;
+
+// Compiles a scene.
+// Errors: CK_BAD_INPUT at the scene's file:line:column, CK_NO_MEMORY. Free with ck_model_free in any case.
+ck_Status ck_model_build(ck_Model *model, const struct ck_Scene *scene, ck_Error *error);
+
+// Accepts a zeroed model.
+void ck_model_free(ck_Model *model);
+
+// Gives a copy of a model springs of its own, [spring_count], of factor times the stiffness.
+void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor);
+
+// True for a particle that is pinned from start to end.
+bool ck_model_is_held(const ck_Model *model, int particle);
+
+// 1/mass, or 0 where pinned, in 1/kg.
+double ck_model_inverse_mass(const ck_Model *model, int particle);
+
+// The sum of all masses that are not pinned, in kg.
+double ck_model_free_mass(const ck_Model *model);
+
+// The first spring of a kind between particles that are not pinned, else any of it, or NULL where there is none: all of
+// a kind have the same stiffness and damping.
+const ck_Spring *ck_model_spring_of_kind(const ck_Model *model, ck_SpringKind kind);
+
+// The mass-weighted mean of ck_model_field over particles that are not pinned, in m/s²: the direction of fall.
+void ck_model_mean_field(const ck_Model *model, double *acceleration);
+
+// What is left of the acceleration when springs, drag and contact are left out: gravity + force/mass, in m/s².
+void ck_model_field(const ck_Model *model, int particle, double *acceleration);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,139 @@
+#include "native.h"
+
+#include "constraint_kernel.h"
+#include "loops.h"
+#include "vector.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Settings *used, ck_Error *error) {
+    size_t vectors = 3 * (size_t)model->particle_count;
+    ck_Native *native = calloc(1, sizeof *native);
+    if (!native) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *native = (ck_Native){
+        .model = model,
+        .dt = model->step / used->substeps,
+        .used = *used,
+        .substeps = used->substeps,
+        .iterations = used->iterations,
+        .position = malloc(vectors * sizeof(double)),
+        .velocity = malloc(vectors * sizeof(double)),
+        .start = calloc(vectors, sizeof(double)),
+        .other_velocity = calloc(vectors, sizeof(double)),
+        .acceleration = calloc(vectors, sizeof(double)),
+        .inverse_mass = malloc((size_t)model->particle_count * sizeof(double)),
+        .multiplier = calloc((size_t)model->spring_count + 1, sizeof(double)),
+    };
+    if (!native->position || !native->velocity || !native->start || !native->other_velocity || !native->acceleration ||
+        !native->inverse_mass || !native->multiplier) {
+        ck_native_destroy(native);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    ck_Status status = ck_contact_create(&native->contact, model, native->dt, error);
+    if (!status) status = ck_waves_create(&native->waves, (int)used->threads, error);
+    native->origin = native->contact ? calloc(vectors, sizeof(double)) : native->start;
+    if (!native->origin && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (status) {
+        ck_native_destroy(native);
+        return status;
+    }
+    memcpy(native->position, model->position, vectors * sizeof(double));
+    memcpy(native->velocity, model->velocity, vectors * sizeof(double));
+    for (int i = 0; i < model->particle_count; i++) native->inverse_mass[i] = ck_model_inverse_mass(model, i);
+    *out = native;
+    return CK_OK;
+}
+
+void ck_native_destroy(void *state) {
+    ck_Native *native = state;
+    if (!native) return;
+    if (native->contact) free(native->origin);
+    free(native->contact);
+    ck_waves_destroy(native->waves);
+    ck_projection_destroy(native->cloth);
+    free(native->compliance);
+    free(native->gamma);
+    free(native->position);
+    free(native->velocity);
+    free(native->start);
+    free(native->other_velocity);
+    free(native->acceleration);
+    free(native->inverse_mass);
+    free(native->multiplier);
+    free(native);
+}
+
+void ck_native_take_vectors(ck_Settings *used, const ck_Settings *wanted) {
+    if (ck_settings_has(wanted, CK_OWN + CK_NATIVE_VECTORS))
+        ck_settings_set(used, CK_OWN + CK_NATIVE_VECTORS, wanted->own[CK_NATIVE_VECTORS]);
+}
+
+const ck_Loops *ck_native_loops(const ck_Native *native) {
+    return ck_loops_for((uint32_t)ck_settings_own(&native->used, CK_NATIVE_VECTORS, 0));
+}
+
+void ck_native_read(const void *state, double *position, double *velocity) {
+    const ck_Native *native = state;
+    memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
+    memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
+}
+
+void ck_native_start_frame(ck_Native *native) {
+    if (native->contact) memset(native->contact->impulse, 0, sizeof native->contact->impulse);
+}
+
+void ck_native_start_substep(ck_Native *native) {
+    size_t bytes = 3 * sizeof(double) * (size_t)native->model->particle_count;
+    memcpy(native->start, native->position, bytes);
+    if (native->contact) memcpy(native->origin, native->start, bytes);
+}
+
+void ck_native_release(void *state, int particle) {
+    ck_Native *native = state;
+    native->inverse_mass[particle] = 1 / native->model->mass[particle];
+}
+
+void ck_native_contact(const void *state, double *force) {
+    const ck_Native *native = state;
+    for (int axis = 0; axis < 3; axis++)
+        force[axis] = native->contact ? native->contact->impulse[axis] / native->model->step : 0;
+}
+
+void ck_native_move(ck_Native *native, int particle, const double *next, const double *field) {
+    double *x = native->position + 3 * particle, *origin = native->origin + 3 * particle, v[3];
+    // the mean velocity stands in the middle of the substep: half of it earlier is the start
+    memcpy(v, next, sizeof v);
+    ck_add_scaled(v, -0.5 * native->dt, field);
+    if (!ck_contact_impacts(native->contact, x, v, field)) {
+        ck_add_scaled(x, native->dt, next);
+        return;
+    }
+    ck_contact_advance(native->contact, native->model->mass[particle], x, v, field);
+    // and the next one's mean velocity is this one's end velocity and half a substep more
+    ck_add_scaled(v, -0.5 * native->dt, field);
+    memcpy(origin, x, 3 * sizeof(double));
+    ck_add_scaled(origin, -native->dt, v);
+    memcpy(native->other_velocity + 3 * particle, v, sizeof v);
+    ck_add_scaled(native->other_velocity + 3 * particle, -native->dt, field);
+}
+
+void ck_native_project(ck_Native *native) {
+    for (int i = 0; i < native->model->particle_count && native->contact; i++)
+        if (native->inverse_mass[i] > 0)
+            ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i,
+                               native->position + 3 * i);
+}
+
+bool ck_native_is_finite(const ck_Native *native) {
+    const uint64_t exponent = 0x7ff0000000000000, one = 0x0010000000000000;
+    uint64_t over = 0;
+    // of what is no finite number the exponent is all ones: one more reaches the sign
+    for (int i = 0; i < 3 * native->model->particle_count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &native->position[i], sizeof bits);
+        over |= (bits & exponent) + one;
+    }
+    return !(over >> 63);
+}

@@ -1,0 +1,73 @@
+// What the native engines share: the state of the particles, and the ledger's common rows.
+#ifndef CK_NATIVE_H
+#define CK_NATIVE_H
+
+#include "contact.h"
+#include "engine.h"
+#include "own_ledger.h"
+#include "waves.h"
+
+struct ck_ProjectedCloth;
+
+typedef struct ck_Native {
+    const ck_Model *model;
+    double dt; // s, one substep
+    ck_Settings used;
+    uint32_t substeps, iterations;
+    double *position, *velocity;     // [3*n]
+    double *start;                   // [3*n] positions at the start of the substep
+    double *origin;                  // [3*n] what a substep's velocity is measured from: start, but for impacts
+    double *other_velocity;          // [3*n] predicted (Verlet), or of one substep earlier (bars)
+    double *acceleration;            // [3*n]
+    double *inverse_mass;            // [n]
+    double *multiplier;              // [springs] of the constraints, kg·m (force·dt²)
+    double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
+    ck_Contact *contact;             // NULL without colliders
+    ck_Waves *waves;                 // NULL: one thread
+    struct ck_ProjectedCloth *cloth; // NULL: the list of springs
+} ck_Native;
+
+// The number of the natives' own setting: the most doubles of an instruction.
+#define CK_NATIVE_VECTORS 0
+
+// Terms that every native engine models.
+#define CK_NATIVE_TERMS                                                                                                \
+    (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |           \
+     CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
+
+// Allocates and sets the start state. Errors: CK_NO_MEMORY.
+ck_Status ck_native_create(ck_Native **native, const ck_Model *model, const ck_Settings *used, ck_Error *error);
+void ck_native_destroy(void *state);
+
+// Copies position and velocity out, for engines whose velocity stands at the time of their positions.
+void ck_native_read(const void *state, double *position, double *velocity);
+
+// Forgets the contact force of the frame before.
+void ck_native_start_frame(ck_Native *native);
+
+// Takes the natives' own setting over.
+void ck_native_take_vectors(ck_Settings *used, const ck_Settings *wanted);
+
+// The loops over rows of the vectors that are set, or of the widest.
+const struct ck_Loops *ck_native_loops(const ck_Native *native);
+
+// Notes the positions at the start of a substep.
+void ck_native_start_substep(ck_Native *native);
+
+// Lets a pinned particle go, at rest.
+void ck_native_release(void *state, int particle);
+
+// The mean force of the colliders on the body over the last frame, [3] N.
+void ck_native_contact(const void *state, double *force);
+
+// For position-based methods: moves a particle by one substep at the mean velocity next of that substep, [3] m/s, or
+// over the impacts on its way, where field, [3] m/s², acts in between; these also set its origin.
+void ck_native_move(ck_Native *native, int particle, const double *next, const double *field);
+
+// Moves every particle that is inside a collider out of it, with friction. Nothing without colliders.
+void ck_native_project(ck_Native *native);
+
+// False where any coordinate has left the finite numbers.
+bool ck_native_is_finite(const ck_Native *native);
+
+#endif

@@ -1,0 +1,262 @@
+// Damped springs stepped by velocity Verlet with predicted velocity: the accuracy workhorse.
+#include "engine.h"
+#include "native.h"
+#include "spring_kernel.h"
+#include "time_scale.h"
+#include "vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Acceleration of all particles from springs, field and drag.
+//   position, velocity  [3*n] in, m and m/s
+//   acceleration        [3*n] out, m/s²
+// Cost: one pass over springs, one over particles. Cannot fail.
+static void accelerate(const ck_Native *native, double *acceleration) {
+    const ck_Model *model = native->model;
+    const double *position = native->position, *velocity = native->other_velocity;
+    memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double d[3], v[3];
+        ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
+        ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
+        double length = ck_length(d);
+        if (!(length > 0)) continue; // coincident particles have no direction to push in
+        double tension = spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) / length;
+        ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
+        ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
+    }
+    for (int i = 0; i < model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        double field[3];
+        ck_model_field(model, i, field);
+        ck_add_scaled(acceleration + 3 * i, 1, field);
+        ck_add_scaled(acceleration + 3 * i, -model->drag, velocity + 3 * i);
+    }
+}
+
+// As substep, where every particle's motion under its acceleration is followed through contact: what is left of both
+// accelerations, by the state at the end, makes the correction.
+static void substep_with_contact(ck_Native *native) {
+    double *x = native->position, *v = native->velocity, *predicted = native->other_velocity, left[3];
+    for (int i = 0; i < native->model->particle_count; i++) {
+        double *a = native->acceleration + 3 * i;
+        if (native->inverse_mass[i] == 0) continue;
+        ck_contact_advance(native->contact, native->model->mass[i], x + 3 * i, v + 3 * i, a);
+        memcpy(predicted + 3 * i, v + 3 * i, 3 * sizeof(double));
+        ck_contact_filter(native->contact, x + 3 * i, v + 3 * i, a, left);
+        ck_add_scaled(v + 3 * i, -0.5 * native->dt, left);
+    }
+    accelerate(native, native->acceleration);
+    for (int i = 0; i < native->model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        ck_contact_filter(native->contact, x + 3 * i, predicted + 3 * i, native->acceleration + 3 * i, left);
+        ck_add_scaled(v + 3 * i, 0.5 * native->dt, left);
+    }
+}
+
+// x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  a' = a(x, v*);  v ← v + (a + a')·dt/2
+// With the velocity predicted, damping keeps the second order; with last step's velocity it would be first.
+// Source: Groot and Warren 1997, eq. 10 with λ = 1.
+static void substep(ck_Native *native) {
+    if (native->contact) {
+        substep_with_contact(native);
+        return;
+    }
+    const double dt = native->dt;
+    const int count = 3 * native->model->particle_count;
+    double *position = native->position, *velocity = native->velocity, *predicted = native->other_velocity;
+    double *acceleration = native->acceleration;
+    for (int i = 0; i < count; i++) {
+        position[i] += dt * velocity[i] + 0.5 * dt * dt * acceleration[i];
+        predicted[i] = velocity[i] + dt * acceleration[i];
+        velocity[i] += 0.5 * dt * acceleration[i];
+    }
+    accelerate(native, acceleration);
+    for (int i = 0; i < count; i++) velocity[i] += 0.5 * dt * acceleration[i];
+}
+
+// Time step: half of the stability bound, so that a cloth that folds (up to √2 in ω) stays inside;
+// and a quarter of the time in which drag takes a speed.
+static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
+    double frequency;
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    if (status) return status;
+    double damping = frequency * frequency * ck_stability_damping_time(model) + model->drag;
+    double limit = ck_stability_drag_time(model, 0.25);
+    if (frequency > 0) limit = fmin(limit, 0.5 * ck_stability_verlet_limit(frequency, damping));
+    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit),
+                          .threads = wanted->threads};
+    ck_native_take_vectors(used, wanted);
+    ck_own_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);
+    ck_own_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "damping",
+                                             model->springs[0].damping, "c along the spring", CK_EXACT});
+    return CK_OK;
+}
+
+// A regular cloth without colliders runs in rows; native then holds its state at the end of a frame.
+typedef struct Verlet {
+    ck_Native *native;
+    ck_ExplicitCloth *cloth; // NULL: the list of springs
+} Verlet;
+
+static void destroy(void *state) {
+    Verlet *verlet = state;
+    ck_explicit_destroy(verlet->cloth);
+    ck_native_destroy(verlet->native);
+    free(verlet);
+}
+
+// The first acceleration belongs to the start, or the first step would lose half a dt of it.
+static ck_Status start(Verlet *verlet, ck_Error *error) {
+    ck_Native *native = verlet->native;
+    const ck_Model *model = native->model;
+    ck_RowSprings springs;
+    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
+    accelerate(native, native->acceleration);
+    ck_explicit_destroy(verlet->cloth);
+    verlet->cloth = NULL;
+    if (native->contact || !ck_rows_fit(model, &springs)) return CK_OK;
+    return ck_explicit_create(&verlet->cloth, ck_native_loops(native), model, &springs, native->dt, native->position,
+                              native->velocity, native->acceleration, native->inverse_mass, error);
+}
+
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    ck_Status status = translate(model, wanted, used, ledger);
+    if (status) return ck_fail(error, status, "out of memory");
+    Verlet *verlet = calloc(1, sizeof *verlet);
+    if (!verlet) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    status = ck_native_create(&verlet->native, model, used, error);
+    if (!status) status = start(verlet, error);
+    if (status)
+        destroy(verlet);
+    else
+        *state = verlet;
+    return status;
+}
+
+static void release(void *state, int particle) {
+    Verlet *verlet = state;
+    ck_native_release(verlet->native, particle);
+    // without memory for rows the list of springs goes on
+    start(verlet, NULL);
+}
+
+static ck_StepResult step(void *state) {
+    Verlet *verlet = state;
+    ck_Native *native = verlet->native;
+    if (verlet->cloth) {
+        ck_explicit_step(verlet->cloth, native->substeps, native->waves);
+        ck_explicit_read(verlet->cloth, native->position, native->velocity);
+    } else {
+        ck_native_start_frame(native);
+        for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+    }
+    return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+static void read_state(const void *state, double *position, double *velocity) {
+    ck_native_read(((const Verlet *)state)->native, position, velocity);
+}
+
+static void read_contact(const void *state, double *force) {
+    ck_native_contact(((const Verlet *)state)->native, force);
+}
+
+static const ck_Setting settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "half of the largest stable step",
+     .help = "steps a frame"},
+    {.name = "threads",
+     .slot = CK_THREADS,
+     .is_whole = true,
+     .least = 1,
+     .most = 64,
+     .unit = "1",
+     .rule = "1",
+     .help = "threads that share a step, on regular cloths"},
+    {.name = "vectors",
+     .slot = CK_OWN + CK_NATIVE_VECTORS,
+     .is_whole = true,
+     .least = 2,
+     .most = 64,
+     .unit = "1",
+     .rule = "the processor's widest",
+     .help = "doubles of an instruction at most, on regular cloths"},
+    {0},
+};
+
+const ck_Engine ck_native_verlet = {
+    .name = "native-verlet",
+    .about = "damped springs, velocity Verlet with predicted velocity",
+    .family = "native",
+    .version = ck_own_version,
+    .method = CK_METHOD_VELOCITY_VERLET,
+    .terms = CK_NATIVE_TERMS,
+    .settings = settings,
+    .order = 2,
+    .create = create,
+    .step = step,
+    .read = read_state,
+    .release = release,
+    .contact = read_contact,
+    .destroy = destroy,
+};
+
+// As narrow as the packages of the peers are built: two doubles an instruction. It says how much of a lead is width.
+static ck_Status create_narrow(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                               ck_Ledger *ledger, ck_Error *error) {
+    ck_RowSprings springs;
+    if (model->collider_count || !ck_rows_fit(model, &springs))
+        return ck_fail(error, CK_REFUSED,
+                       "is native-verlet: only regular cloths without colliders are stepped in vectors");
+    ck_Settings narrow = *wanted;
+    ck_settings_set(&narrow, CK_OWN + CK_NATIVE_VECTORS, 2);
+    return create(state, model, &narrow, used, ledger, error);
+}
+
+static const ck_Setting narrow_settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "half of the largest stable step",
+     .help = "steps a frame"},
+    {.name = "threads",
+     .slot = CK_THREADS,
+     .is_whole = true,
+     .least = 1,
+     .most = 64,
+     .unit = "1",
+     .rule = "1",
+     .help = "threads that share a step, on regular cloths"},
+    {0},
+};
+
+const ck_Engine ck_native_narrow = {
+    .name = "native-narrow",
+    .about = "native-verlet with two doubles an instruction, as the packages of its peers are built",
+    .family = "native",
+    .version = ck_own_version,
+    .method = CK_METHOD_VELOCITY_VERLET,
+    .terms = CK_NATIVE_TERMS,
+    .settings = narrow_settings,
+    .order = 2,
+    .create = create_narrow,
+    .step = step,
+    .read = read_state,
+    .release = release,
+    .contact = read_contact,
+    .destroy = destroy,
+};

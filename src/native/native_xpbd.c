@@ -1,0 +1,224 @@
+// Extended position-based dynamics: compliant constraints, one iteration per small substep.
+#include "engine.h"
+#include "projection.h"
+#include "time_scale.h"
+#include "vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// One Gauss–Seidel sweep: Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃), α̃ = 1/(k·dt²), γ̃ = c/(k·dt).
+// A rigid bar has α̃ = γ̃ = 0. Cost: one pass over springs.
+// Source: Macklin, Müller, Chentanez 2016, eq. 18 and 26.
+static void sweep(ck_Native *native) {
+    const ck_Model *model = native->model;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double weight_a = native->inverse_mass[spring->a], weight_b = native->inverse_mass[spring->b];
+        if (weight_a + weight_b == 0) continue;
+        double *a = native->position + 3 * spring->a, *b = native->position + 3 * spring->b;
+        double d[3], moved[3];
+        ck_subtract(d, b, a);
+        double length = ck_length(d);
+        if (!(length > 0)) continue;
+        double compliance = native->compliance[i], damping = native->gamma[i];
+        for (int axis = 0; axis < 3; axis++)
+            moved[axis] = d[axis] - (native->start[3 * spring->b + axis] - native->start[3 * spring->a + axis]);
+        double residual =
+            length - spring->rest + compliance * native->multiplier[i] + damping * ck_dot(moved, d) / length;
+        double change = -native->used.relaxation * residual / ((1 + damping) * (weight_a + weight_b) + compliance);
+        native->multiplier[i] += change;
+        ck_add_scaled(a, -weight_a * change / length, d);
+        ck_add_scaled(b, weight_b * change / length, d);
+    }
+}
+
+// x ← x + v·dt + a·dt²;  sweeps;  v ← (x − x_start)/dt/(1 + γ·dt)
+// Drag comes last: before the sweeps it would also ease gravity's push, and a body at rest would hang too high.
+static void substep(ck_Native *native) {
+    const ck_Model *model = native->model;
+    const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
+    ck_native_start_substep(native);
+    memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
+    for (int i = 0; i < model->particle_count; i++) {
+        if (native->inverse_mass[i] == 0) continue;
+        double field[3];
+        ck_model_field(model, i, field);
+        if (native->contact) {
+            double next[3];
+            memcpy(next, native->velocity + 3 * i, sizeof next);
+            ck_add_scaled(next, dt, field);
+            ck_native_move(native, i, next, field);
+        } else {
+            ck_add_scaled(native->position + 3 * i, dt, native->velocity + 3 * i);
+            ck_add_scaled(native->position + 3 * i, dt * dt, field);
+        }
+    }
+    for (uint32_t i = 0; i < native->iterations; i++) {
+        sweep(native);
+        ck_native_project(native);
+    }
+    for (int i = 0; i < 3 * model->particle_count; i++)
+        native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
+}
+
+// Time step: with 1/k_eff = 1/k + w·(dt² + c·dt/k)/iterations, where damping softens too, a spring is at most 0.5 % too
+// soft: k·dt² + c·dt ≤ 0.005·iterations/w. Drag is first order: at most 2 % of a speed a substep.
+static double time_step_limit(const ck_Model *model, uint32_t iterations) {
+    if (model->terms & CK_TERM_RIGID)
+        return fmin(ck_stability_drag_time(model, 0.02), ck_stability_bar_time(model, iterations));
+    double limit = ck_stability_drag_time(model, 0.02), allowed = 0.005 * iterations / ck_stability_lightness(model);
+    for (int i = 0; i < model->spring_count; i++) {
+        double k = model->springs[i].stiffness, c = model->springs[i].damping;
+        limit = fmin(limit, 2 * allowed / (c + sqrt(c * c + 4 * k * allowed)));
+    }
+    return limit;
+}
+
+// m/N
+static double compliance_of(const ck_Spring *spring, const ck_Settings *used) {
+    return used->softness > 0 ? used->softness : 1 / spring->stiffness;
+}
+
+static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
+    *used = (ck_Settings){.substeps = wanted->substeps,
+                          .iterations = wanted->iterations             ? wanted->iterations
+                                        : model->terms & CK_TERM_RIGID ? ck_stability_sweeps(model)
+                                                                       : 1,
+                          .relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1,
+                          .softness = wanted->softness,
+                          .threads = wanted->threads};
+    ck_native_take_vectors(used, wanted);
+    if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
+    double dt = model->step / used->substeps;
+    ck_own_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (!spring) continue;
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "compliance",
+                                     compliance_of(spring, used) / (dt * dt),
+                                     used->softness > 0 ? "as set, over dt^2"
+                                                        : "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations",
+                                     CK_APPROXIMATE});
+    }
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
+                                             model->springs[0].damping * compliance_of(&model->springs[0], used) / dt,
+                                             "c*compliance/dt", CK_APPROXIMATE});
+}
+
+static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
+    const double dt = native->dt;
+    ck_ProjectionRule rule = {CK_PROJECT_SPRINGS,
+                              dt,
+                              native->iterations,
+                              1,
+                              {0},
+                              1 / (1 + native->model->drag * dt),
+                              native->used.softness,
+                              native->used.relaxation};
+    ck_model_field(native->model, 0, rule.push);
+    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= dt;
+    return ck_native_project_rows(native, &rule, error);
+}
+
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    translate(model, wanted, used, ledger);
+    ck_Native *native;
+    ck_Status status = ck_native_create(&native, model, used, error);
+    if (status) return status;
+    size_t springs = (size_t)model->spring_count;
+    native->compliance = malloc(sizeof(double) * springs + 1);
+    native->gamma = malloc(sizeof(double) * springs + 1);
+    if (!native->compliance || !native->gamma) {
+        ck_native_destroy(native);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    for (size_t i = 0; i < springs; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        native->compliance[i] = compliance_of(spring, used) / (native->dt * native->dt);
+        native->gamma[i] = spring->damping * compliance_of(spring, used) / native->dt;
+    }
+    return ck_native_hand_out(state, native, lay_in_rows(native, error));
+}
+
+static void release(void *state, int particle) {
+    ck_native_release(state, particle);
+    // without memory for rows the list of springs goes on
+    lay_in_rows(state, NULL);
+}
+
+static ck_StepResult step(void *state) {
+    return ck_native_step_frame(state, substep);
+}
+
+static const ck_Setting settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "what one sweep is good to 1 % for",
+     .help = "steps a frame"},
+    {.name = "iterations",
+     .slot = CK_ITERATIONS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "1; of rigid bars 4 where they outnumber freedoms",
+     .help = "sweeps over all constraints a substep"},
+    {.name = "relaxation",
+     .slot = CK_RELAXATION,
+     .least = 0.01,
+     .most = 2,
+     .unit = "1",
+     .rule = "1",
+     .help = "over-relaxation of a sweep; 1 to 1.5 helps"},
+    {.name = "compliance",
+     .slot = CK_SOFTNESS,
+     .least = 1e-30,
+     .most = 1e6,
+     .unit = "m/N",
+     .rule = "1/k of each spring",
+     .help = "compliance of every spring"},
+    {.name = "threads",
+     .slot = CK_THREADS,
+     .is_whole = true,
+     .least = 1,
+     .most = 64,
+     .unit = "1",
+     .rule = "1",
+     .help = "threads that share a step, on regular cloths"},
+    {.name = "vectors",
+     .slot = CK_OWN + CK_NATIVE_VECTORS,
+     .is_whole = true,
+     .least = 2,
+     .most = 64,
+     .unit = "1",
+     .rule = "the processor's widest",
+     .help = "doubles of an instruction at most, on regular cloths"},
+    {0},
+};
+
+const ck_Engine ck_native_xpbd = {
+    .name = "native-xpbd",
+    .about = "compliant position constraints, one iteration per small substep",
+    .family = "native",
+    .version = ck_own_version,
+    .method = CK_METHOD_XPBD,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
+    .settings = settings,
+    .order = 1,
+    .rest_order = 2,
+    .damped_rest_order = 1, // γ̃ sees gravity's push, too
+    .create = create,
+    .step = step,
+    .read = ck_native_read,
+    .release = release,
+    .contact = ck_native_contact,
+    .destroy = ck_native_destroy,
+};

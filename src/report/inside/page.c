@@ -1,0 +1,232 @@
+#include "page.h"
+
+#include "chart.h"
+#include "files.h"
+#include "paths.h"
+#include "process.h"
+#include "replay_pack.h"
+
+#include <errno.h>
+#include <nettle/base64.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+typedef struct Page {
+    const ck_ReportData *data;
+    const char *sources, *charts;
+    const bool *drawn;
+    FILE *file;
+} Page;
+
+// Text of a JSON string; names are plain, titles have no control characters.
+static void write_text(FILE *file, const char *text) {
+    fputc('"', file);
+    for (const char *letter = text; *letter; letter++)
+        fprintf(file, *letter == '"' || *letter == '\\' ? "\\%c" : *letter == '<' ? "\\u003c" : "%c", *letter);
+    fputc('"', file);
+}
+
+// Compresses into *out. Errors: CK_NO_MEMORY. Free *out in any case.
+static ck_Status compress_bytes(char **out, size_t *out_size, const char *bytes, size_t size, ck_Error *error) {
+    z_stream stream = {0};
+    *out = NULL;
+    // 15 + 16: the largest window, with gzip's header
+    if (deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    size_t most = deflateBound(&stream, size);
+    *out = malloc(most);
+    stream.next_in = (Bytef *)bytes;
+    stream.avail_in = (uInt)size;
+    stream.next_out = (Bytef *)*out;
+    stream.avail_out = (uInt)most;
+    int result = *out ? deflate(&stream, Z_FINISH) : Z_MEM_ERROR;
+    *out_size = stream.total_out;
+    deflateEnd(&stream);
+    return result == Z_STREAM_END ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+}
+
+// Adds bytes under a name that scripts of the page find them by.
+static ck_Status pack(const Page *page, const char *name, const char *bytes, size_t size, ck_Error *error) {
+    if (ck_child_interrupted) return ck_fail(error, CK_IO, "interrupted; no report was written");
+    char *small;
+    size_t small_size;
+    ck_Status status = compress_bytes(&small, &small_size, bytes, size, error);
+    char *text = status ? NULL : malloc(BASE64_ENCODE_RAW_LENGTH(small_size) + 1);
+    if (!status && !text) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) {
+        base64_encode_raw(text, small_size, (const uint8_t *)small);
+        fprintf(page->file, "<script type=\"application/gzip\" id=\"file:%s\">", name);
+        fwrite(text, 1, BASE64_ENCODE_RAW_LENGTH(small_size), page->file);
+        fprintf(page->file, "</script>\n");
+    }
+    free(text);
+    free(small);
+    return status;
+}
+
+static ck_Status pack_file(const Page *page, const char *directory, const char *file, ck_Error *error) {
+    char *path = ck_path_join(directory, file), *bytes = NULL;
+    size_t size;
+    ck_Status status = path ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_file_read(&bytes, &size, path, error);
+    if (!status) status = pack(page, file, bytes, size, error);
+    free(bytes);
+    free(path);
+    return status;
+}
+
+static bool has_replay(const Page *page, const char *scene) {
+    char *path;
+    if (asprintf(&path, "%s/" CK_REPLAY_DIRECTORY "/%s.replay", page->data->directory, scene) < 0) return false;
+    bool is_there = ck_report_table(page->data, CK_RUNS) && access(path, F_OK) == 0;
+    free(path);
+    return is_there;
+}
+
+static ck_Status pack_replay(const Page *page, const char *scene, ck_Error *error) {
+    ck_Replay replay;
+    char *packed = NULL, name[200];
+    size_t size;
+    ck_Status status = ck_replay_read(&replay, page->data->directory, scene, error);
+    if (!status) status = ck_replay_pack(&packed, &size, &replay, error);
+    snprintf(name, sizeof name, "%s.replay", scene);
+    if (!status) status = pack(page, name, packed, size, error);
+    free(packed);
+    ck_replay_free(&replay);
+    return status;
+}
+
+static void write_engines(const Page *page) {
+    fprintf(page->file, "\"engines\":[");
+    for (int i = 0; i < page->data->engine_count; i++) {
+        ck_Look look = ck_chart_look(i);
+        fprintf(page->file, "%s{\"name\":\"%s\",\"color\":\"%s\",\"sign\":\"%s\"}", i ? "," : "",
+                page->data->engines[i], look.color, look.sign);
+    }
+    fprintf(page->file, "]");
+}
+
+static void write_charts(const Page *page, int scene) {
+    bool is_first = true;
+    fprintf(page->file, "[");
+    for (int i = 0; i < ck_chart_count(); i++) {
+        const ck_Chart *chart = ck_chart_at(i);
+        char file[200];
+        if (!page->drawn[scene * ck_chart_count() + i]) continue;
+        ck_chart_file(file, sizeof file, chart, scene < page->data->scene_count ? page->data->scenes[scene] : NULL);
+        fprintf(page->file,
+                "%s{\"name\":\"%s\",\"file\":\"%s\",\"width\":%d,\"height\":%d,\"title\":", is_first ? "" : ",",
+                chart->name, file, chart->width, chart->height);
+        write_text(page->file, chart->title);
+        fprintf(page->file, "}");
+        is_first = false;
+    }
+    fprintf(page->file, "]");
+}
+
+// What the page is of, for its scripts.
+static void write_contents(const Page *page) {
+    const ck_ReportData *data = page->data;
+    fprintf(page->file, "<script type=\"application/json\" id=\"report\">{\"version\":\"%s\",", CK_VERSION);
+    write_engines(page);
+    fprintf(page->file, ",\"scenes\":[");
+    for (int i = 0; i < data->scene_count; i++) {
+        fprintf(page->file, "%s{\"name\":\"%s\",\"has_replay\":%s,\"charts\":", i ? "," : "", data->scenes[i],
+                has_replay(page, data->scenes[i]) ? "true" : "false");
+        write_charts(page, i);
+        fprintf(page->file, "}");
+    }
+    fprintf(page->file, "],\"charts\":");
+    write_charts(page, data->scene_count);
+    fprintf(page->file, ",\"tables\":[");
+    for (int i = 0, count = 0; i < CK_REPORT_LAYOUTS; i++) {
+        if (!ck_report_table(data, i)) continue;
+        fprintf(page->file, "%s{\"file\":\"%s\",\"rows\":%d,\"about\":", count++ ? "," : "", ck_layouts[i].file,
+                data->tables[i].row_count);
+        write_text(page->file, ck_layouts[i].about);
+        fprintf(page->file, "}");
+    }
+    fprintf(page->file, "]}</script>\n");
+}
+
+static ck_Status pack_charts(const Page *page, ck_Error *error) {
+    ck_Status status = CK_OK;
+    for (int scene = 0; scene <= page->data->scene_count; scene++)
+        for (int i = 0; i < ck_chart_count() && !status; i++) {
+            char name[200], file[220];
+            if (!page->drawn[scene * ck_chart_count() + i]) continue;
+            ck_chart_file(name, sizeof name, ck_chart_at(i),
+                          scene < page->data->scene_count ? page->data->scenes[scene] : NULL);
+            snprintf(file, sizeof file, "%s.svg", name);
+            status = pack_file(page, page->charts, file, error);
+        }
+    return status;
+}
+
+static ck_Status write_report(const Page *page, ck_Error *error) {
+    const ck_ReportData *data = page->data;
+    write_contents(page);
+    ck_Status status = CK_OK;
+    // series of a whole comparison would make the page slow to open: they lie beside it
+    for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++)
+        if (ck_report_table(data, i) && i != CK_SERIES)
+            status = pack_file(page, data->directory, ck_layouts[i].file, error);
+    // what was summed up for the chart is what the page's first table is of
+    if (!status && data->summary_count) status = pack_file(page, page->charts, "summary.csv", error);
+    if (!status) status = pack_charts(page, error);
+    for (int i = 0; i < data->scene_count && !status; i++)
+        if (has_replay(page, data->scenes[i])) status = pack_replay(page, data->scenes[i], error);
+    return status;
+}
+
+static ck_Status include(const Page *page, const char *name, ck_Error *error) {
+    static const char three[] = "three/";
+    bool is_three = !strncmp(name, three, strlen(three));
+    char *path, *bytes;
+    size_t size;
+    if (asprintf(&path, "%s%s%s", is_three ? CK_THREE_DIRECTORY : page->sources, is_three ? "/" : "/page/",
+                 is_three ? name + strlen(three) : name) < 0)
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Status status = ck_file_read(&bytes, &size, path, error);
+    if (!status) fwrite(bytes, 1, size, page->file);
+    free(bytes);
+    free(path);
+    return status;
+}
+
+static ck_Status fill_template(const Page *page, char *template, ck_Error *error) {
+    static const char include_word[] = "@include ";
+    ck_Status status = CK_OK;
+    char *rest = template;
+    for (char *line; !status && (line = strsep(&rest, "\n"));) {
+        if (!strncmp(line, include_word, strlen(include_word)))
+            status = include(page, line + strlen(include_word), error);
+        else if (!strcmp(line, "@report"))
+            status = write_report(page, error);
+        else
+            fprintf(page->file, "%s\n", line);
+    }
+    return status;
+}
+
+ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const char *charts, const bool *drawn,
+                        const char *path, ck_Error *error) {
+    Page page = {.data = data, .sources = sources, .charts = charts, .drawn = drawn};
+    char *source = ck_path_join(sources, "page/page.html"), *template = NULL;
+    size_t size;
+    ck_Status status = source ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_file_read(&template, &size, source, error);
+    if (!status && !(page.file = fopen(path, "w"))) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
+    if (!status) status = fill_template(&page, template, error);
+    if (page.file) {
+        bool failed = fflush(page.file) || ferror(page.file);
+        failed |= fclose(page.file) != 0;
+        if (!status && failed) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
+        if (status) unlink(path);
+    }
+    free(template);
+    free(source);
+    return status;
+}

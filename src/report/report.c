@@ -1,0 +1,106 @@
+#include "report.h"
+
+#include "chart.h"
+#include "page.h"
+#include "paths.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <ftw.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place) {
+    (void)about;
+    (void)kind;
+    (void)place;
+    return remove(path);
+}
+
+static void remove_tree(const char *path) {
+    nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+}
+
+// Charts are files that a report has written, or the user's own things lie among them and would be lost.
+static ck_Status check_charts(const char *charts, ck_Error *error) {
+    static const char *const endings[] = {".svg", ".png", ".csv", ".gp", ".log"};
+    DIR *directory = opendir(charts);
+    ck_Status status = CK_OK;
+    if (!directory && errno != ENOENT) return ck_fail(error, CK_IO, "%s: %s", charts, strerror(errno));
+    for (struct dirent *entry; directory && !status && (entry = readdir(directory));) {
+        const char *ending = strrchr(entry->d_name, '.');
+        bool is_own = entry->d_name[0] == '.';
+        for (size_t i = 0; i < sizeof endings / sizeof *endings && !is_own; i++)
+            is_own = ending && !strcmp(ending, endings[i]);
+        if (!is_own)
+            status = ck_fail(error, CK_BAD_INPUT, "%s/%s: is no chart; move it away, for charts/ is written anew",
+                             charts, entry->d_name);
+    }
+    if (directory) closedir(directory);
+    return status;
+}
+
+// Where everything is before it has its name, and what was there before.
+typedef struct Places {
+    char *charts, *new_charts, *old_charts, *page, *new_page;
+} Places;
+
+static bool find_places(Places *places, const char *directory) {
+    *places = (Places){ck_path_join(directory, CK_CHART_DIRECTORY), ck_path_part(directory, CK_CHART_DIRECTORY),
+                       ck_path_part(directory, "old_charts"), ck_path_join(directory, "index.html"),
+                       ck_path_part(directory, "index.html")};
+    return places->charts && places->new_charts && places->old_charts && places->page && places->new_page;
+}
+
+static void free_places(Places *places) {
+    free(places->charts);
+    free(places->new_charts);
+    free(places->old_charts);
+    free(places->page);
+    free(places->new_page);
+}
+
+// Charts and page take the place of the old ones together, or not at all. Errors: CK_IO.
+static ck_Status replace(const Places *places, ck_Error *error) {
+    bool had_charts = !rename(places->charts, places->old_charts);
+    bool failed = rename(places->new_charts, places->charts) || rename(places->new_page, places->page);
+    if (!failed) {
+        if (had_charts) remove_tree(places->old_charts);
+        return CK_OK;
+    }
+    ck_Status status = ck_fail(error, CK_IO, "%s: %s", places->page, strerror(errno));
+    remove_tree(places->charts);
+    if (had_charts && rename(places->old_charts, places->charts))
+        status =
+            ck_fail(error, CK_IO, "%s: the charts that were there are now in %s", places->charts, places->old_charts);
+    return status;
+}
+
+ck_Status ck_report_write(const char *directory, ck_Error *error) {
+    // gnuplot is run in another directory
+    char data_directory[PATH_MAX], named[PATH_MAX + 10], sources[PATH_MAX];
+    bool has_data = ck_path_data(data_directory, sizeof data_directory);
+    snprintf(named, sizeof named, "%s/reports", data_directory);
+    if (!has_data || !realpath(named, sources))
+        return ck_fail(error, CK_IO, "%s: %s; it must hold the scripts of charts and page", named, strerror(errno));
+    ck_ReportData data;
+    Places places;
+    bool is_found = find_places(&places, directory), *drawn = NULL;
+    ck_Status status = ck_report_data_read(&data, directory, error);
+    if (!status) drawn = calloc((size_t)(data.scene_count + 1) * (size_t)ck_chart_count(), sizeof *drawn);
+    if (!status && !(is_found && drawn)) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = check_charts(places.charts, error);
+    if (!status) {
+        status = ck_charts_draw(&data, places.new_charts, sources, drawn, error);
+        if (!status) status = ck_page_write(&data, sources, places.new_charts, drawn, places.new_page, error);
+        if (!status) status = replace(&places, error);
+        if (status) remove_tree(places.new_charts);
+        if (status) unlink(places.new_page);
+    }
+    free(drawn);
+    free_places(&places);
+    ck_report_data_free(&data);
+    return status;
+}

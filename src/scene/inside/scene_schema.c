@@ -1,0 +1,154 @@
+#include "scene_schema.h"
+
+#include "scene.h"
+
+#define OPTIONAL CYAML_FLAG_OPTIONAL
+#define REQUIRED CYAML_FLAG_DEFAULT
+
+const ck_RangeRule ck_scene_ranges[] = {
+    {"cloth.rows", CK_RANGE_POSITIVE},
+    {"cloth.columns", CK_RANGE_POSITIVE},
+    {"cloth.spacing", CK_RANGE_POSITIVE},
+    {"cloth.mass", CK_RANGE_POSITIVE},
+    {"rope.particles", CK_RANGE_POSITIVE},
+    {"rope.spacing", CK_RANGE_POSITIVE},
+    {"rope.mass", CK_RANGE_POSITIVE},
+    {"rope.end_mass", CK_RANGE_NOT_NEGATIVE},
+    {"network.nodes[].mass", CK_RANGE_POSITIVE},
+    {"springs.stiffness", CK_RANGE_NOT_NEGATIVE},
+    {"springs.damping", CK_RANGE_NOT_NEGATIVE},
+    {"springs.shear", CK_RANGE_NOT_NEGATIVE},
+    {"springs.bend", CK_RANGE_NOT_NEGATIVE},
+    {"springs.prestretch", CK_RANGE_NOT_NEGATIVE},
+    {"noise.amplitude", CK_RANGE_NOT_NEGATIVE},
+    {"drag", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].plane.restitution", CK_RANGE_UNIT},
+    {"colliders[].plane.friction", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].sphere.radius", CK_RANGE_POSITIVE},
+    {"colliders[].sphere.restitution", CK_RANGE_UNIT},
+    {"colliders[].sphere.friction", CK_RANGE_NOT_NEGATIVE},
+    {"release[].at", CK_RANGE_NOT_NEGATIVE},
+    {"time.duration", CK_RANGE_POSITIVE},
+    {"time.step", CK_RANGE_POSITIVE},
+    {"time.fps", CK_RANGE_POSITIVE},
+    {NULL, CK_RANGE_FINITE},
+};
+
+static const cyaml_schema_value_t number = {CYAML_VALUE_FLOAT(CYAML_FLAG_DEFAULT, double)};
+static const cyaml_schema_value_t index_pair_entry = {CYAML_VALUE_UINT(CYAML_FLAG_DEFAULT, uint32_t)};
+static const cyaml_schema_value_t index_pair = {
+    CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, uint32_t, &index_pair_entry, 2)};
+static const cyaml_schema_value_t text = {CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 0, CYAML_UNLIMITED)};
+
+static const cyaml_schema_field_t cloth_fields[] = {
+    CYAML_FIELD_UINT("rows", REQUIRED, ck_SceneCloth, rows),
+    CYAML_FIELD_UINT("columns", REQUIRED, ck_SceneCloth, columns),
+    CYAML_FIELD_FLOAT("spacing", REQUIRED, ck_SceneCloth, spacing),
+    CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneCloth, mass),
+    CYAML_FIELD_SEQUENCE_FIXED("origin", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, origin, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("across", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, across, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("down", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, down, &number, 3),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t rope_fields[] = {
+    CYAML_FIELD_UINT("particles", REQUIRED, ck_SceneRope, particles),
+    CYAML_FIELD_FLOAT("spacing", REQUIRED, ck_SceneRope, spacing),
+    CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneRope, mass),
+    CYAML_FIELD_FLOAT("end_mass", OPTIONAL, ck_SceneRope, end_mass),
+    CYAML_FIELD_SEQUENCE_FIXED("origin", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRope, origin, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("along", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRope, along, &number, 3),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t node_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("at", REQUIRED, ck_SceneNode, at, &number, 3),
+    CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneNode, mass),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t node = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneNode, node_fields)};
+
+static const cyaml_schema_field_t network_fields[] = {
+    CYAML_FIELD_SEQUENCE("nodes", REQUIRED | CYAML_FLAG_POINTER, ck_SceneNetwork, nodes, &node, 1,
+                         CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_SEQUENCE("bars", REQUIRED | CYAML_FLAG_POINTER, ck_SceneNetwork, bars, &index_pair, 0,
+                         CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t springs_fields[] = {
+    CYAML_FIELD_FLOAT("stiffness", OPTIONAL, ck_SceneSprings, stiffness),
+    CYAML_FIELD_FLOAT("damping", OPTIONAL, ck_SceneSprings, damping),
+    CYAML_FIELD_FLOAT("shear", OPTIONAL, ck_SceneSprings, shear),
+    CYAML_FIELD_FLOAT("bend", OPTIONAL, ck_SceneSprings, bend),
+    CYAML_FIELD_FLOAT("prestretch", OPTIONAL, ck_SceneSprings, prestretch),
+    CYAML_FIELD_BOOL("rigid", OPTIONAL, ck_SceneSprings, rigid),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t noise_fields[] = {
+    CYAML_FIELD_FLOAT("amplitude", REQUIRED, ck_SceneNoise, amplitude),
+    CYAML_FIELD_UINT("seed", REQUIRED, ck_SceneNoise, seed),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t plane_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("point", REQUIRED, ck_ScenePlane, point, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("normal", REQUIRED, ck_ScenePlane, normal, &number, 3),
+    CYAML_FIELD_FLOAT("restitution", OPTIONAL, ck_ScenePlane, restitution),
+    CYAML_FIELD_FLOAT("friction", OPTIONAL, ck_ScenePlane, friction),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t sphere_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("center", REQUIRED, ck_SceneSphere, center, &number, 3),
+    CYAML_FIELD_FLOAT("radius", REQUIRED, ck_SceneSphere, radius),
+    CYAML_FIELD_FLOAT("restitution", OPTIONAL, ck_SceneSphere, restitution),
+    CYAML_FIELD_FLOAT("friction", OPTIONAL, ck_SceneSphere, friction),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t collider_fields[] = {
+    CYAML_FIELD_MAPPING_PTR("plane", OPTIONAL, ck_SceneCollider, plane, plane_fields),
+    CYAML_FIELD_MAPPING_PTR("sphere", OPTIONAL, ck_SceneCollider, sphere, sphere_fields),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t collider = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneCollider, collider_fields)};
+
+static const cyaml_schema_field_t release_fields[] = {
+    CYAML_FIELD_FLOAT("at", REQUIRED, ck_SceneRelease, at),
+    CYAML_FIELD_SEQUENCE("pins", REQUIRED | CYAML_FLAG_POINTER, ck_SceneRelease, pins, &text, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t release = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneRelease, release_fields)};
+
+static const cyaml_schema_field_t time_fields[] = {
+    CYAML_FIELD_FLOAT("duration", REQUIRED, ck_SceneTime, duration),
+    CYAML_FIELD_FLOAT("step", OPTIONAL, ck_SceneTime, step),
+    CYAML_FIELD_FLOAT("fps", OPTIONAL, ck_SceneTime, fps),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t scene_fields[] = {
+    CYAML_FIELD_STRING_PTR("name", REQUIRED | CYAML_FLAG_POINTER, ck_SceneFile, name, 1, 100),
+    CYAML_FIELD_STRING_PTR("about", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, about, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_MAPPING_PTR("cloth", OPTIONAL, ck_SceneFile, cloth, cloth_fields),
+    CYAML_FIELD_MAPPING_PTR("rope", OPTIONAL, ck_SceneFile, rope, rope_fields),
+    CYAML_FIELD_MAPPING_PTR("network", OPTIONAL, ck_SceneFile, network, network_fields),
+    CYAML_FIELD_MAPPING_PTR("springs", OPTIONAL, ck_SceneFile, springs, springs_fields),
+    CYAML_FIELD_SEQUENCE("pins", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, pins, &text, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_MAPPING_PTR("noise", OPTIONAL, ck_SceneFile, noise, noise_fields),
+    CYAML_FIELD_SEQUENCE_FIXED("gravity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, gravity, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("force", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, force, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, velocity, &number, 3),
+    CYAML_FIELD_FLOAT("drag", OPTIONAL, ck_SceneFile, drag),
+    CYAML_FIELD_SEQUENCE("colliders", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, colliders, &collider, 0, 1000),
+    CYAML_FIELD_SEQUENCE("release", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, release, &release, 0, 1000),
+    CYAML_FIELD_MAPPING("time", REQUIRED, ck_SceneFile, time, time_fields),
+    CYAML_FIELD_STRING_PTR("truth", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, truth, 1, 100),
+    CYAML_FIELD_SEQUENCE("measure", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, measure, &text, 0, 100),
+    CYAML_FIELD_IGNORE("settings", OPTIONAL),
+    CYAML_FIELD_END,
+};
+const cyaml_schema_value_t ck_scene_schema = {CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, ck_SceneFile, scene_fields)};

@@ -1,0 +1,71 @@
+#include "scene.h"
+
+#include "scene_check.h"
+#include "scene_schema.h"
+
+#include <cyaml/cyaml.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// Aliases could make a small file describe an enormous scene; nobody needs them in one.
+static const cyaml_config_t cyaml = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_NO_ALIAS};
+
+static const char *text_of(yaml_document_t *yaml, int node) {
+    return (const char *)yaml_document_get_node(yaml, node)->data.scalar.value;
+}
+
+// Of a checked document. False when out of memory.
+static bool read_settings(ck_Scene *scene) {
+    yaml_document_t *yaml = &scene->document.yaml;
+    yaml_node_t *engines = ck_document_find(&scene->document, "settings");
+    if (engines == yaml_document_get_root_node(yaml)) return true;
+    for (yaml_node_pair_t *engine = engines->data.mapping.pairs.start; engine < engines->data.mapping.pairs.top;
+         engine++) {
+        yaml_node_t *keys = yaml_document_get_node(yaml, engine->value);
+        size_t more = (size_t)(keys->data.mapping.pairs.top - keys->data.mapping.pairs.start);
+        ck_SceneSetting *grown =
+            realloc(scene->settings, ((size_t)scene->setting_count + more + 1) * sizeof *scene->settings);
+        if (!grown) return false;
+        scene->settings = grown;
+        for (yaml_node_pair_t *key = keys->data.mapping.pairs.start; key < keys->data.mapping.pairs.top; key++)
+            grown[scene->setting_count++] = (ck_SceneSetting){.engine = text_of(yaml, engine->key),
+                                                              .key = text_of(yaml, key->key),
+                                                              .value = strtod(text_of(yaml, key->value), NULL),
+                                                              .engine_at = yaml_document_get_node(yaml, engine->key),
+                                                              .key_at = yaml_document_get_node(yaml, key->key),
+                                                              .value_at = yaml_document_get_node(yaml, key->value)};
+    }
+    return true;
+}
+
+ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
+    *scene = (ck_Scene){0};
+    ck_Status status = ck_document_load(&scene->document, path, error);
+    if (!status) status = ck_scene_check(&scene->document, &ck_scene_schema, error);
+    if (status) return status;
+    cyaml_err_t result = cyaml_load_data(scene->document.text, scene->document.length, &cyaml, &ck_scene_schema,
+                                         (cyaml_data_t **)&scene->file, NULL);
+    if (result == CYAML_ERR_OOM) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    if (result) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, cyaml_strerror(result));
+    ck_SceneTime *time = &scene->file->time;
+    if (time->fps > 0) time->step = 1 / time->fps;
+    if (!read_settings(scene)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    return CK_OK;
+}
+
+void ck_scene_free(ck_Scene *scene) {
+    cyaml_free(&cyaml, &ck_scene_schema, scene->file, 0);
+    free(scene->settings);
+    ck_document_free(&scene->document);
+    *scene = (ck_Scene){0};
+}
+
+ck_Status ck_scene_fail(const ck_Scene *scene, const char *path, ck_Error *error, const char *format, ...) {
+    char message[sizeof error->message];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return ck_document_fail(&scene->document, ck_document_find(&scene->document, path), error, "%s", message);
+}

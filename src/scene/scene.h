@@ -1,0 +1,125 @@
+// A scene file as it was written: SI units, nothing resolved yet. What is left out is NULL or 0 and is not modelled.
+#ifndef CK_SCENE_H
+#define CK_SCENE_H
+
+#include "document.h"
+#include "status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// The most particles, and the most springs, that a scene may ask for.
+#define CK_SCENE_MAX_PARTICLES 4000000
+
+typedef struct ck_SceneCloth {
+    uint32_t rows, columns;
+    double spacing, mass; // m between neighbours; kg of the whole cloth
+    double *origin;       // [3] m, row 0 column 0; NULL: (0, 0, 0)
+    double *across;       // [3] direction of growing column; NULL: (1, 0, 0)
+    double *down;         // [3] direction of growing row; NULL: (0, −1, 0)
+} ck_SceneCloth;
+
+typedef struct ck_SceneRope {
+    uint32_t particles;
+    double spacing, mass, end_mass; // m; kg of the whole rope; kg added to its last particle
+    double *origin, *along;         // [3]; NULL: (0, 0, 0) and (0, −1, 0)
+} ck_SceneRope;
+
+typedef struct ck_SceneNode {
+    double at[3]; // m
+    double mass;  // kg
+} ck_SceneNode;
+
+typedef struct ck_SceneNetwork {
+    ck_SceneNode *nodes;
+    uint32_t nodes_count;
+    uint32_t (*bars)[2];
+    uint32_t bars_count;
+} ck_SceneNetwork;
+
+typedef struct ck_SceneSprings {
+    double stiffness, damping, shear, bend; // N/m, N·s/m, N/m, N/m
+    double prestretch;                      // strain at the start: rest length = length/(1 + prestretch)
+    bool rigid;                             // springs become bars of fixed length
+} ck_SceneSprings;
+
+typedef struct ck_SceneNoise {
+    double amplitude; // m
+    uint32_t seed;
+} ck_SceneNoise;
+
+typedef struct ck_ScenePlane {
+    double point[3], normal[3];
+    double restitution, friction;
+} ck_ScenePlane;
+
+typedef struct ck_SceneSphere {
+    double center[3], radius;
+    double restitution, friction;
+} ck_SceneSphere;
+
+typedef struct ck_SceneCollider {
+    ck_ScenePlane *plane;
+    ck_SceneSphere *sphere;
+} ck_SceneCollider;
+
+typedef struct ck_SceneRelease {
+    double at; // s
+    char **pins;
+    uint32_t pins_count;
+} ck_SceneRelease;
+
+typedef struct ck_SceneTime {
+    double duration, step; // s
+    double fps;            // frames a second, in place of step; 0: step is given
+} ck_SceneTime;
+
+// The part of a scene that the file's schema fills.
+typedef struct ck_SceneFile {
+    char *name, *about;
+    ck_SceneCloth *cloth;
+    ck_SceneRope *rope;
+    ck_SceneNetwork *network;
+    ck_SceneSprings *springs;
+    char **pins;
+    uint32_t pins_count;
+    ck_SceneNoise *noise;
+    double *gravity, *force, *velocity; // [3] m/s², N on each particle, m/s; NULL: none
+    double drag;                        // 1/s
+    ck_SceneCollider *colliders;
+    uint32_t colliders_count;
+    ck_SceneRelease *release;
+    uint32_t release_count;
+    ck_SceneTime time;
+    char *truth;
+    char **measure;
+    uint32_t measure_count;
+} ck_SceneFile;
+
+// A setting of an engine, as it is written: which engines there are, and what they have, is not known here.
+typedef struct ck_SceneSetting {
+    const char *engine, *key; // of the document
+    double value;
+    const yaml_node_t *engine_at, *key_at, *value_at;
+} ck_SceneSetting;
+
+typedef struct ck_Scene {
+    ck_SceneFile *file;
+    ck_Document document;
+    ck_SceneSetting *settings; // [setting_count]
+    int setting_count;
+} ck_Scene;
+
+// Loads and checks a scene file: keys, types and the range of every single value.
+// What several values must agree on (pins and the body, bars and nodes) is checked by ck_model_build.
+// Errors: CK_BAD_INPUT with file:line:column, what is wrong and what would be right; CK_NO_MEMORY; CK_IO.
+ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error);
+
+// Accepts a zeroed scene.
+void ck_scene_free(ck_Scene *scene);
+
+// Fails at the place of a dotted path in the scene file, such as "network.bars[3]".
+ck_Status ck_scene_fail(const ck_Scene *scene, const char *path, ck_Error *error, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+#endif

@@ -1,0 +1,435 @@
+#include "bench.h"
+
+#include "clock.h"
+#include "engines.h"
+#include "loops.h"
+#include "scene.h"
+#include "springs.h"
+#include "statistics.h"
+#include "time_scale.h"
+
+#include <malloc.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_ROUNDS 99
+#define MAX_SIZES 16 // of a growing cloth, whose side doubles
+// How long a repeat lasts at least, s: far above the clock's grain.
+#define REPEAT 0.02
+// Substeps of a frame: what an engine does once a frame is shared out, as in use.
+#define SUBSTEPS 16
+// Sweeps that a start may take to the strain that is asked for.
+#define MOST_SWEEPS 4096
+#define STRAIN 0.04
+
+typedef struct Body {
+    const char *name;
+    uint32_t rows, columns; // columns 1: a rope
+} Body;
+
+static const Body bodies[] = {{"cloth", 20, 20}, {"cloth", 64, 64}, {"cloth", 256, 256}, {"rope", 1000, 1}};
+
+// Operations of a row kernel on a regular cloth with shear, as a processor's arithmetic units issue them for a lane:
+// products, sums, both fused, shifts and comparisons. What marks springs that are there counts with the particle;
+// bars are marked by their constants.
+typedef struct Work {
+    double spring, particle;
+} Work;
+
+// Engines and set-ups. What projects is given ten iterations; beside: the native engine whose updates are the measure.
+typedef struct Candidate {
+    const char *engine, *setup;
+    ck_Settings settings;
+    int beside;
+    Work work; // 0: not counted
+    bool is_damped;
+    const char *own; // a setting of the engine's own, NULL: none; and its value
+    double value;
+} Candidate;
+
+enum { VERLET, BARS, XPBD, VERLET_2, BARS_2, XPBD_2 };
+
+static const Candidate candidates[] = {
+    [VERLET] = {"native-verlet", "", {0}, VERLET, .work = {25, 12}},
+    [BARS] = {"native-bars", "10 iterations", {.iterations = 10}, BARS, .work = {17, 9}},
+    [XPBD] = {"native-xpbd", "10 iterations", {.iterations = 10}, BARS},
+    [VERLET_2] = {"native-verlet", "2 threads", {.threads = 2}, VERLET},
+    [BARS_2] = {"native-bars", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, BARS},
+    [XPBD_2] = {"native-xpbd", "10 iterations, 2 threads", {.iterations = 10, .threads = 2}, XPBD},
+    {"native-verlet", "vectors of 4", {0}, VERLET, .own = "vectors", .value = 4},
+    {"native-bars", "10 iterations, vectors of 4", {.iterations = 10}, BARS, .own = "vectors", .value = 4},
+    {"native-xpbd", "10 iterations, vectors of 4", {.iterations = 10}, XPBD, .own = "vectors", .value = 4},
+    {"native-verlet", "vectors of 2", {0}, VERLET, .own = "vectors", .value = 2},
+    {"native-bars", "10 iterations, vectors of 2", {.iterations = 10}, BARS, .own = "vectors", .value = 2},
+    {"native-xpbd", "10 iterations, vectors of 2", {.iterations = 10}, XPBD, .own = "vectors", .value = 2},
+    {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {33, 19}, .is_damped = true},
+    {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
+    {"native-rope", "4 iterations", {.iterations = 4}, BARS},
+    {"seed-tecido", "10 iterations", {.iterations = 10}, BARS},
+    {"seed-cloth", "", {0}, VERLET},
+    {"bullet-pbd", "10 iterations", {.iterations = 10}, BARS},
+    {"bullet-pbd", "10 iterations, reordered", {.iterations = 10}, BARS, .own = "reordered", .value = 1},
+    {"bullet-explicit", "", {0}, VERLET},
+    {"bullet-implicit", "", {0}, VERLET},
+    {"ode-quick", "10 iterations", {.iterations = 10}, BARS},
+};
+#define CANDIDATES (sizeof candidates / sizeof *candidates)
+
+typedef struct Entrant {
+    const ck_Engine *engine;
+    const Candidate *candidate;
+    void *state;
+    int frames;               // of a repeat
+    double times[MAX_ROUNDS]; // s a step, by round
+    int count;
+    char reason[200]; // why there is no time; empty: there is
+} Entrant;
+
+// A body of 1 m and 0.2 kg in gravity, let go level: k = 1000 N/m along, 500 across. A substep is half of the explicit
+// bound without damping, so that every engine steps alike.
+static ck_Status build(ck_Model *model, const Body *body, bool is_damped, ck_Error *error) {
+    double down[3] = {0, 0, 1}, gravity[3] = {0, -9.81, 0}, along[3] = {1, 0, 0};
+    char *pins[] = {body->columns > 1 ? "top_left" : "first", body->columns > 1 ? "top_right" : "first"};
+    uint32_t longest = body->rows > body->columns ? body->rows : body->columns;
+    ck_SceneCloth cloth = {.rows = body->rows, .columns = body->columns, .spacing = 1.0 / (longest - 1), .mass = 0.2};
+    ck_SceneRope rope = {.particles = body->rows, .spacing = cloth.spacing, .mass = 0.2};
+    ck_SceneSprings springs = {.stiffness = 1000, .shear = 500, .damping = is_damped ? 0.02 : 0};
+    cloth.down = down;
+    rope.along = along;
+    ck_SceneFile file = {.name = (char *)body->name,
+                         .cloth = body->columns > 1 ? &cloth : NULL,
+                         .rope = body->columns > 1 ? NULL : &rope,
+                         .springs = &springs,
+                         .pins = pins,
+                         .pins_count = 2,
+                         .gravity = gravity,
+                         .drag = is_damped ? 2 : 0,
+                         .time = {1, 1}};
+    ck_Scene scene = {.file = &file};
+    ck_Status status = ck_model_build(model, &scene, error);
+    double frequency = 0;
+    if (!status) status = ck_stability_frequency(model, &frequency);
+    if (!status) model->step = SUBSTEPS / frequency;
+    return status;
+}
+
+// Time of a substep, s: CPU time, but of threads that share it wall time.
+static double time_frames(Entrant *entrant, int frames) {
+    double (*clock)(void) = entrant->candidate->settings.threads > 1 ? ck_wall : ck_thread_cpu;
+    double start = clock();
+    for (int i = 0; i < frames && !*entrant->reason; i++)
+        if (entrant->engine->step(entrant->state) != CK_STEP_OK)
+            snprintf(entrant->reason, sizeof entrant->reason, "did not get through its steps");
+    return (clock() - start) / frames / SUBSTEPS;
+}
+
+static bool sets(const Candidate *candidate, const char *own) {
+    return candidate->own && !strcmp(candidate->own, own);
+}
+
+static void create(Entrant *entrant, const ck_Model *model, ck_Settings wanted) {
+    const Candidate *candidate = entrant->candidate;
+    if (candidate->own)
+        ck_settings_set(&wanted, ck_setting_find(entrant->engine->settings, candidate->own)->slot, candidate->value);
+    ck_Settings used;
+    ck_Error why = {0};
+    if (model->terms & ~entrant->engine->terms)
+        snprintf(entrant->reason, sizeof entrant->reason, "does not model it");
+    else if (entrant->engine->create(&entrant->state, model, &wanted, &used, NULL, &why))
+        snprintf(entrant->reason, sizeof entrant->reason, "%.199s", why.message);
+    if (*entrant->reason) entrant->state = NULL;
+}
+
+// Creates an engine's world and finds how many frames make a repeat.
+static void enter(Entrant *entrant, const Candidate *candidate, const ck_Model *model, const ck_BenchOptions *options) {
+    *entrant = (Entrant){.engine = ck_engine_find(candidate->engine), .candidate = candidate};
+    ck_Settings wanted = candidate->settings;
+    wanted.substeps = SUBSTEPS;
+    create(entrant, model, wanted);
+    if (sets(candidate, "vectors") && (model->columns <= 1 || candidate->value >= ck_loops_at(0)->lanes))
+        snprintf(entrant->reason, sizeof entrant->reason, "no other than without that setting");
+    if (*entrant->reason) return;
+    double once = SUBSTEPS * time_frames(entrant, 1);
+    entrant->frames = (int)fmax(1, ceil(REPEAT / fmax(once, 1e-9)));
+    if (once > options->budget)
+        snprintf(entrant->reason, sizeof entrant->reason, "one frame takes longer than the budget");
+}
+
+// quartiles: the median, the lower and the upper one; NULL: none, for the reason.
+static void add_row(ck_Csv *csv, const Body *body, const ck_Model *model, const char *engine, const char *setup,
+                    const char *metric, const char *unit, const double *quartiles, double scale, const char *reason) {
+    ck_csv_text(csv, body->name);
+    ck_csv_count(csv, (uint64_t)model->particle_count);
+    ck_csv_count(csv, (uint64_t)model->spring_count);
+    ck_csv_text(csv, engine);
+    ck_csv_text(csv, setup);
+    ck_csv_text(csv, metric);
+    ck_csv_text(csv, unit);
+    for (int i = 0; i < 3; i++) ck_csv_number(csv, quartiles ? scale * quartiles[i] : NAN);
+    ck_csv_text(csv, reason ? reason : "");
+}
+
+static void find_quartiles(const double *values, int count, double *quartiles) {
+    double sorted[MAX_ROUNDS];
+    memcpy(sorted, values, sizeof *sorted * (size_t)count);
+    quartiles[0] = ck_median(sorted, count);
+    quartiles[1] = ck_quantile(sorted, count, 0.25);
+    quartiles[2] = ck_quantile(sorted, count, 0.75);
+}
+
+static double updates_of(const Entrant *entrant, const ck_Model *model) {
+    uint32_t iterations = entrant->candidate->settings.iterations;
+    return (double)model->spring_count * (iterations ? iterations : 1);
+}
+
+// This engine's time over that of the native one, an update of each, round by round; of threads the gain.
+static void add_ratio(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant,
+                      const Entrant *native) {
+    double ratios[MAX_ROUNDS], quartiles[3];
+    bool is_shared = entrant->candidate->settings.threads > 1;
+    if (entrant == native || *native->reason || !native->count) return;
+    for (int i = 0; i < entrant->count; i++) {
+        ratios[i] = entrant->times[i] / native->times[i] * updates_of(native, model) / updates_of(entrant, model);
+        if (is_shared) ratios[i] = 1 / ratios[i];
+    }
+    find_quartiles(ratios, entrant->count, quartiles);
+    add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup,
+            is_shared ? "speedup_of_threads" : "update_over_native", "1", quartiles, 1, NULL);
+}
+
+// The share of the processor's peak that the row kernels reach: on cloths, with one thread.
+static void add_share(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant, double peak,
+                      const double *quartiles) {
+    const Work *each = &entrant->candidate->work;
+    if (body->columns == 1 || each->spring == 0 || !ck_loops_at(0)->fuses) return;
+    double work = each->spring * updates_of(entrant, model) + each->particle * (double)model->particle_count;
+    const double shares[3] = {work / peak / quartiles[0], work / peak / quartiles[2], work / peak / quartiles[1]};
+    add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup, "share_of_peak", "1", shares, 1, NULL);
+}
+
+static void add_entrant(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant,
+                        const Entrant *native, double peak) {
+    const char *name = entrant->engine->name, *setup = entrant->candidate->setup;
+    if (*entrant->reason || !entrant->count) {
+        add_row(csv, body, model, name, setup, "step_time", "s", NULL, 1, entrant->reason);
+        return;
+    }
+    double quartiles[3];
+    find_quartiles(entrant->times, entrant->count, quartiles);
+    add_row(csv, body, model, name, setup, "step_time", "s", quartiles, 1, NULL);
+    add_row(csv, body, model, name, setup, "update_time", "ns", quartiles, 1e9 / updates_of(entrant, model), NULL);
+    add_ratio(csv, body, model, entrant, native);
+    add_share(csv, body, model, entrant, peak, quartiles);
+}
+
+static void leave(Entrant *entrants, size_t count) {
+    for (size_t i = 0; i < count && entrants; i++)
+        if (entrants[i].state) entrants[i].engine->destroy(entrants[i].state);
+    free(entrants);
+}
+
+// All engines on one body, in rounds: a slow spell of the machine hits all alike.
+static ck_Status race(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, double peak, ck_Error *error) {
+    ck_Model models[2] = {0}; // undamped, damped
+    Entrant *entrants = calloc(CANDIDATES, sizeof *entrants);
+    ck_Status status = entrants ? build(&models[0], body, false, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = build(&models[1], body, true, error);
+    for (size_t i = 0; i < CANDIDATES && !status; i++) {
+        if (options->progress) options->progress(body->name, candidates[i].engine);
+        enter(&entrants[i], &candidates[i], &models[candidates[i].is_damped], options);
+    }
+    for (int round = 0; round < options->rounds && !status; round++)
+        for (size_t i = 0; i < CANDIDATES; i++)
+            if (!*entrants[i].reason)
+                entrants[i].times[entrants[i].count++] = time_frames(&entrants[i], entrants[i].frames);
+    for (size_t i = 0; i < CANDIDATES && !status; i++)
+        add_entrant(csv, body, &models[0], &entrants[i], &entrants[candidates[i].beside], peak);
+    leave(entrants, CANDIDATES);
+    ck_model_free(&models[0]);
+    ck_model_free(&models[1]);
+    return status;
+}
+
+// What a simulated second costs where each engine's own rules set its step, on the body as it is let go.
+static ck_Status add_seconds(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, ck_Error *error) {
+    ck_Model model = {0};
+    ck_Status status = build(&model, body, false, error);
+    for (int i = 0; i < ck_engine_count() && !status; i++) {
+        Candidate automatic = {.engine = ck_engine_at(i)->name, .setup = "automatic"};
+        Entrant entrant = {.engine = ck_engine_at(i), .candidate = &automatic};
+        if (entrant.engine->method == CK_METHOD_STILL) continue;
+        if (options->progress) options->progress(body->name, automatic.engine);
+        create(&entrant, &model, automatic.settings);
+        double spent = 0;
+        while (!*entrant.reason && spent < 10 * REPEAT && entrant.count < MAX_ROUNDS) {
+            double once = SUBSTEPS * time_frames(&entrant, 1);
+            spent += once;
+            entrant.times[entrant.count++] = once / model.step;
+        }
+        double quartiles[3];
+        if (entrant.count) find_quartiles(entrant.times, entrant.count, quartiles);
+        add_row(csv, body, &model, automatic.engine, automatic.setup, "second_time", "s/s",
+                *entrant.reason ? NULL : quartiles, 1, entrant.reason);
+        if (entrant.state) entrant.engine->destroy(entrant.state);
+    }
+    ck_model_free(&model);
+    return status;
+}
+
+// One step of so many sweeps from the model's start: the strain that is left, and the CPU time; NaN where it fails.
+static double sweep_start(const Candidate *candidate, const ck_Model *model, uint32_t sweeps, double *seconds) {
+    Entrant entrant = {.engine = ck_engine_find(candidate->engine), .candidate = candidate};
+    ck_Settings wanted = candidate->settings;
+    wanted.substeps = 1;
+    wanted.iterations = sweeps;
+    create(&entrant, model, wanted);
+    *seconds = NAN;
+    if (*entrant.reason) return NAN;
+    double *state = malloc(6 * sizeof *state * (size_t)model->particle_count), strain = NAN;
+    *seconds = SUBSTEPS * time_frames(&entrant, 1);
+    if (state && !*entrant.reason) {
+        entrant.engine->read(entrant.state, state, state + 3 * model->particle_count);
+        strain = ck_springs_rms_strain(model, state);
+    }
+    entrant.engine->destroy(entrant.state);
+    free(state);
+    return strain;
+}
+
+// The fewest sweeps that leave no more than STRAIN; 0 where MOST_SWEEPS do not.
+static uint32_t find_sweeps(const Candidate *candidate, const ck_Model *model) {
+    double seconds;
+    uint32_t enough = 1, few = 0;
+    while (enough <= MOST_SWEEPS && !(sweep_start(candidate, model, enough, &seconds) <= STRAIN)) {
+        few = enough;
+        enough *= 2;
+    }
+    while (enough <= MOST_SWEEPS && enough - few > 1) {
+        uint32_t middle = (few + enough) / 2;
+        if (sweep_start(candidate, model, middle, &seconds) <= STRAIN)
+            enough = middle;
+        else
+            few = middle;
+    }
+    return enough <= MOST_SWEEPS ? enough : 0;
+}
+
+// A cloth of rigid bars that starts 10 % too long, hung by its upper corners, without gravity: the time to 4 % strain.
+static ck_Status build_stretched(ck_Model *model, const Body *body, ck_Error *error) {
+    ck_Status status = build(model, body, false, error);
+    for (int i = 0; i < model->spring_count && !status; i++) {
+        model->springs[i].rest /= 1.1;
+        model->springs[i].stiffness = INFINITY;
+    }
+    memset(model->gravity, 0, sizeof model->gravity);
+    model->terms = CK_TERM_SPRINGS | CK_TERM_RIGID;
+    return status;
+}
+
+// What projects, by one thread and with the vectors that there are: the rest take as many sweeps.
+static bool has_residual(const Candidate *candidate) {
+    return candidate->settings.iterations && !candidate->settings.threads && !sets(candidate, "vectors");
+}
+
+static ck_Status add_residuals(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, ck_Error *error) {
+    ck_Model model = {0};
+    uint32_t sweeps[CANDIDATES] = {0};
+    double times[CANDIDATES][MAX_ROUNDS], quartiles[3];
+    ck_Status status = build_stretched(&model, body, error);
+    for (size_t i = 0; i < CANDIDATES && !status; i++) {
+        if (!has_residual(&candidates[i])) continue;
+        if (options->progress) options->progress(body->name, candidates[i].engine);
+        sweeps[i] = find_sweeps(&candidates[i], &model);
+    }
+    for (int round = 0; round < options->rounds && !status; round++)
+        for (size_t i = 0; i < CANDIDATES; i++)
+            if (sweeps[i]) sweep_start(&candidates[i], &model, sweeps[i], &times[i][round]);
+    for (size_t i = 0; i < CANDIDATES && !status; i++) {
+        if (!has_residual(&candidates[i])) continue;
+        const double count = sweeps[i], each[3] = {count, count, count};
+        const char *reason = count > 0 ? NULL : "does not model rigid bars, or does not get there in 4096 sweeps";
+        find_quartiles(times[i], sweeps[i] ? options->rounds : 0, quartiles);
+        add_row(csv, body, &model, candidates[i].engine, candidates[i].setup, "sweeps_to_strain", "1",
+                reason ? NULL : each, 1, reason);
+        add_row(csv, body, &model, candidates[i].engine, candidates[i].setup, "time_to_strain", "s",
+                reason ? NULL : quartiles, 1, reason);
+    }
+    ck_model_free(&model);
+    return status;
+}
+
+#define PEAK_ROUNDS 200000
+
+// Operations a second, at best: what no loop here can beat.
+static double find_peak(void) {
+    double best = 0;
+    for (int i = 0; i < 20; i++) {
+        double result, start = ck_thread_cpu();
+        long count = ck_loops_at(0)->peak(PEAK_ROUNDS, &result);
+        best = fmax(best, (double)count / (ck_thread_cpu() - start));
+    }
+    return best;
+}
+
+static double bytes_in_use(void) {
+    struct mallinfo2 info = mallinfo2();
+    return (double)(info.uordblks + info.hblkhd);
+}
+
+// One size of the growing cloth: step time and the memory of the engine's own state.
+static ck_Status grow_to(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, double *seconds,
+                         ck_Error *error) {
+    ck_Model model = {0};
+    ck_Status status = build(&model, body, false, error);
+    if (!status) {
+        Entrant entrant;
+        double before = bytes_in_use();
+        enter(&entrant, &candidates[VERLET], &model, options);
+        double bytes = (bytes_in_use() - before) / model.particle_count, quartiles[3] = {NAN, NAN, NAN};
+        for (int round = 0; round < options->rounds && !*entrant.reason; round++)
+            entrant.times[entrant.count++] = time_frames(&entrant, entrant.frames);
+        if (entrant.count) find_quartiles(entrant.times, entrant.count, quartiles);
+        *seconds = quartiles[0];
+        const double each[3] = {bytes, bytes, bytes};
+        add_row(csv, body, &model, "native-verlet", "", "growth_step_time", "s", quartiles, 1, entrant.reason);
+        add_row(csv, body, &model, "native-verlet", "", "memory_per_particle", "B", each, 1, NULL);
+        if (entrant.state) entrant.engine->destroy(entrant.state);
+    }
+    ck_model_free(&model);
+    return status;
+}
+
+// The exponent of time ~ particles^p, by least squares over all sizes.
+static ck_Status grow(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
+    double x[MAX_SIZES], y[MAX_SIZES];
+    int count = 0;
+    ck_Status status = CK_OK;
+    for (uint32_t side = 16; side <= (uint32_t)options->largest && !status; side *= 2) {
+        double seconds = NAN;
+        if (options->progress) options->progress("growing cloth", "native-verlet");
+        status = grow_to(csv, &(Body){"cloth", side, side}, options, &seconds, error);
+        if (isnan(seconds)) continue;
+        x[count] = 2 * log(side);
+        y[count++] = log(seconds);
+    }
+    const double p = ck_slope(x, y, count), each[3] = {p, p, p};
+    ck_Model none = {0};
+    add_row(csv, &(Body){.name = "cloth"}, &none, "native-verlet", "", "growth_exponent", "1", each, 1, NULL);
+    return status;
+}
+
+ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
+    double peak = find_peak();
+    const double each[3] = {peak, peak, peak};
+    ck_Model none = {0};
+    add_row(csv, &(Body){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
+    ck_Status status = CK_OK;
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies && !status; i++)
+        status = race(csv, &bodies[i], options, peak, error);
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies && !status; i++)
+        status = add_seconds(csv, &bodies[i], options, error);
+    for (size_t i = 0; i < 2 && !status; i++) status = add_residuals(csv, &bodies[i], options, error);
+    return status ? status : grow(csv, options, error);
+}

@@ -1,0 +1,69 @@
+// Regression: what engines measure on scenes against a committed baseline, within bands that theory gives.
+#ifndef CK_CHECK_H
+#define CK_CHECK_H
+
+#include "comparison.h"
+#include "csv_writer.h"
+#include "study.h"
+#include "trial.h"
+
+// A row of the baseline.
+typedef struct ck_BaselineRow {
+    char scene[64], engine[64], status[32], metric[64];
+    double value, band; // NaN where the metric did not apply
+} ck_BaselineRow;
+
+typedef struct ck_Baseline {
+    ck_BaselineRow *rows;
+    int count;
+} ck_Baseline;
+
+// Reads directory/metrics.csv. Errors: CK_BAD_INPUT with file, line and what is wrong; CK_IO, CK_NO_MEMORY. Free with
+// ck_baseline_free in any case.
+ck_Status ck_baseline_read(ck_Baseline *baseline, const char *directory, ck_Error *error);
+void ck_baseline_free(ck_Baseline *baseline);
+
+// Adds a row as it is.
+void ck_baseline_add(const ck_BaselineRow *row, ck_Csv *csv);
+
+// One run to check, or to make a baseline of.
+typedef struct ck_CheckCase {
+    const ck_Comparison *comparison; // with its truth
+    const ck_Engine *engine;
+} ck_CheckCase;
+
+typedef struct ck_Check {
+    ck_CheckCase *cases; // the caller's
+    int case_count;
+    const ck_CompareOptions *options;
+    bool is_update; // finds bands, too
+} ck_Check;
+
+// The study that measures. A row holds CPU time, the metrics in their order, then their bands.
+ck_Study ck_check_study(const ck_Check *check);
+
+// How far a measured value may be from the baseline's. nudged is the same run's from a start that is off by 1e-12 of
+// the size, the farthest of three: what rounding may come to on another machine, of which ten times is allowed, and
+// 1e-10 of the value.
+double ck_check_band(double value, double nudged);
+
+typedef struct ck_Deviation {
+    const ck_BaselineRow *row;
+    double value;       // now
+    const char *status; // now; as in row where it did not change
+    double excess;      // |value − row| / band; INFINITY where the status changed or a value came or went
+} ck_Deviation;
+
+// Compares a case's measurement with its rows. deviations [baseline->count] gets those beyond their band, worst first
+// within the case. Returns how many.
+int ck_check_compare(const ck_CheckCase *one, const ck_JournalRow *row, const ck_Baseline *baseline,
+                     ck_Deviation *deviations);
+
+// Adds a case's rows to a new baseline. A run that takes longer than a check should, seconds of CPU, is left out.
+bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seconds, ck_Csv *csv);
+
+// Writes all cases and their deviations as JUnit XML. Errors: CK_IO.
+ck_Status ck_check_write_junit(const char *path, const ck_Check *check, const ck_JournalRow *rows,
+                               const ck_Baseline *baseline, ck_Error *error);
+
+#endif

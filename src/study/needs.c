@@ -1,0 +1,341 @@
+#include "needs.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A scene file with one term changed: the parts that changes point to.
+typedef struct Reduced {
+    ck_SceneFile file;
+    ck_SceneCloth cloth;
+    ck_SceneRope rope;
+    ck_SceneSprings springs;
+    ck_SceneCollider colliders[CK_NEEDS_MOST];
+    ck_ScenePlane planes[CK_NEEDS_MOST];
+    ck_SceneSphere spheres[CK_NEEDS_MOST];
+    double force[3];
+} Reduced;
+
+// Copies what a change may touch, so that the scene stays as it is.
+static void copy_file(Reduced *reduced, const ck_SceneFile *file) {
+    reduced->file = *file;
+    if (file->cloth) reduced->cloth = *file->cloth, reduced->file.cloth = &reduced->cloth;
+    if (file->rope) reduced->rope = *file->rope, reduced->file.rope = &reduced->rope;
+    if (file->springs) reduced->springs = *file->springs, reduced->file.springs = &reduced->springs;
+    if (file->colliders_count) reduced->file.colliders = reduced->colliders;
+    for (uint32_t i = 0; i < file->colliders_count; i++) {
+        reduced->colliders[i] = file->colliders[i];
+        if (file->colliders[i].plane)
+            reduced->planes[i] = *file->colliders[i].plane, reduced->colliders[i].plane = &reduced->planes[i];
+        if (file->colliders[i].sphere)
+            reduced->spheres[i] = *file->colliders[i].sphere, reduced->colliders[i].sphere = &reduced->spheres[i];
+    }
+}
+
+static bool has_shear(const ck_SceneFile *file) {
+    return file->springs && file->springs->shear > 0;
+}
+static void drop_shear(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->springs.shear = 0;
+}
+
+static bool has_bend(const ck_SceneFile *file) {
+    return file->springs && file->springs->bend > 0;
+}
+static void drop_bend(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->springs.bend = 0;
+}
+
+static bool has_damping(const ck_SceneFile *file) {
+    return file->springs && file->springs->damping > 0;
+}
+static void drop_damping(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->springs.damping = 0;
+}
+
+static bool has_drag(const ck_SceneFile *file) {
+    return file->drag > 0;
+}
+static void drop_drag(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->file.drag = 0;
+}
+
+static bool has_noise(const ck_SceneFile *file) {
+    return file->noise != NULL;
+}
+static void drop_noise(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->file.noise = NULL;
+}
+
+static bool has_friction(const ck_SceneFile *file) {
+    bool has = false;
+    for (uint32_t i = 0; i < file->colliders_count; i++)
+        has |=
+            (file->colliders[i].plane ? file->colliders[i].plane->friction : file->colliders[i].sphere->friction) > 0;
+    return has;
+}
+static void drop_friction(Reduced *reduced, int collider) {
+    (void)collider;
+    for (int i = 0; i < CK_NEEDS_MOST; i++) reduced->planes[i].friction = reduced->spheres[i].friction = 0;
+}
+
+static bool has_restitution(const ck_SceneFile *file) {
+    bool has = false;
+    for (uint32_t i = 0; i < file->colliders_count; i++)
+        has |= (file->colliders[i].plane ? file->colliders[i].plane->restitution
+                                         : file->colliders[i].sphere->restitution) > 0;
+    return has;
+}
+static void drop_restitution(Reduced *reduced, int collider) {
+    (void)collider;
+    for (int i = 0; i < CK_NEEDS_MOST; i++) reduced->planes[i].restitution = reduced->spheres[i].restitution = 0;
+}
+
+static bool has_collider(const ck_SceneFile *file) {
+    return file->colliders_count > 0;
+}
+static void drop_collider(Reduced *reduced, int collider) {
+    uint32_t last = --reduced->file.colliders_count;
+    reduced->colliders[collider] = reduced->colliders[last];
+    if (!last) reduced->file.colliders = NULL;
+}
+
+static uint32_t greatest_divisor(uint32_t a, uint32_t b) {
+    return b ? greatest_divisor(b, a % b) : a;
+}
+
+// By what share of its springs in a row a body can do with about half of them and keep its size: a cloth's rows and
+// columns must both come out whole. 0: by none.
+static double halved_share(const ck_SceneFile *file) {
+    if (file->rope)
+        return file->rope->particles > 3 ? floor(file->rope->particles / 2.0) / (file->rope->particles - 1) : 0;
+    if (!file->cloth || file->cloth->rows < 2 || file->cloth->columns < 2) return 0;
+    uint32_t divisor = greatest_divisor(file->cloth->rows - 1, file->cloth->columns - 1);
+    return divisor > 1 ? (divisor + 1) / 2 / (double)divisor : 0;
+}
+
+static bool is_halvable(const ck_SceneFile *file) {
+    return file->rope || file->cloth;
+}
+
+static const char *not_halved(const ck_SceneFile *file) {
+    // pins by number would be others then
+    for (uint32_t i = 0; i < file->pins_count; i++)
+        if (strpbrk(file->pins[i], "0123456789")) return "its pins are numbered, and would be others";
+    if (file->release_count) return "it lets pins go";
+    return halved_share(file) > 0 ? NULL : "no coarser grid of square cells has its size";
+}
+
+static uint32_t scale_count(uint32_t count, double share) {
+    return (uint32_t)round((count - 1) * share) + 1;
+}
+
+// The body keeps its size, its mass and what pushes it. A rope's springs, half as many in a row, have k and c in
+// proportion to their number; a sheet's, half as many in a row and side by side, keep them.
+static void halve(Reduced *reduced, int collider) {
+    (void)collider;
+    double share = halved_share(&reduced->file), particles = 1, left = 1;
+    if (reduced->file.cloth) {
+        ck_SceneCloth *cloth = &reduced->cloth;
+        particles = (double)cloth->rows * cloth->columns;
+        cloth->rows = scale_count(cloth->rows, share);
+        cloth->columns = scale_count(cloth->columns, share);
+        cloth->spacing /= share;
+        left = (double)cloth->rows * cloth->columns;
+    } else {
+        ck_SceneRope *rope = &reduced->rope;
+        particles = rope->particles;
+        rope->particles = scale_count(rope->particles, share);
+        rope->spacing /= share;
+        left = rope->particles;
+        reduced->springs.stiffness *= share;
+        reduced->springs.bend *= share;
+        reduced->springs.damping *= share;
+    }
+    for (int axis = 0; axis < 3 && reduced->file.force; axis++) {
+        reduced->force[axis] = reduced->file.force[axis] * particles / left;
+        if (axis == 2) reduced->file.force = reduced->force;
+    }
+}
+
+static const struct {
+    const char *name;
+    bool (*is_there)(const ck_SceneFile *file);
+    void (*leave_out)(Reduced *reduced, int collider);
+    bool of_each_collider, moves_particles;          // the particles are others: paths cannot be compared
+    const char *(*cannot)(const ck_SceneFile *file); // why it cannot be left out; may be NULL
+} terms[] = {
+    {"shear", has_shear, drop_shear, false, false, NULL},
+    {"bend", has_bend, drop_bend, false, false, NULL},
+    {"spring damping", has_damping, drop_damping, false, false, NULL},
+    {"drag", has_drag, drop_drag, false, false, NULL},
+    {"friction", has_friction, drop_friction, false, false, NULL},
+    {"restitution", has_restitution, drop_restitution, false, false, NULL},
+    {"collider", has_collider, drop_collider, true, false, NULL},
+    {"noise", has_noise, drop_noise, false, false, NULL},
+    {"every second particle", is_halvable, halve, false, true, not_halved},
+};
+#define TERMS ((int)(sizeof terms / sizeof *terms))
+
+static void list_cases(ck_Needs *needs) {
+    const ck_SceneFile *file = needs->comparison->scene.file;
+    for (int term = 0; term < TERMS; term++) {
+        int count = terms[term].of_each_collider ? (int)file->colliders_count : 1;
+        for (int i = 0; terms[term].is_there(file) && i < count && needs->case_count < CK_NEEDS_MOST; i++) {
+            ck_NeedsCase *one = &needs->cases[needs->case_count++];
+            *one = (ck_NeedsCase){.term = term, .collider = i};
+            if (terms[term].of_each_collider)
+                snprintf(one->name, sizeof one->name, "collider %d (%s)", i + 1,
+                         file->colliders[i].plane ? "plane" : "sphere");
+            else
+                snprintf(one->name, sizeof one->name, "%s", terms[term].name);
+        }
+    }
+}
+
+ck_Status ck_needs_create(ck_Needs *needs, const ck_Comparison *comparison, const ck_Engine *engine, double tolerance,
+                          const ck_Settings *given, const ck_Limits *limits, ck_Error *error) {
+    *needs = (ck_Needs){.comparison = comparison, .engine = engine, .tolerance = tolerance, .limits = *limits};
+    if (engine->method == CK_METHOD_STILL)
+        return ck_fail(error, CK_BAD_INPUT, "%s moves nothing, so that it needs nothing; give another --engine",
+                       engine->name);
+    if (comparison->scene.file->colliders_count > CK_NEEDS_MOST - TERMS)
+        return ck_fail(error, CK_REFUSED, "%s: has more than %d colliders to leave out", comparison->path,
+                       CK_NEEDS_MOST - TERMS);
+    needs->given = *given;
+    const ck_Settings wanted = *given;
+    // no truth: with and without are set against each other
+    const ck_Reference none = {.is_static = comparison->truth.reference.is_static};
+    ck_Status status =
+        ck_measurement_take(&needs->whole, &comparison->model, &none, engine, &wanted, limits, &needs->base, error);
+    if (!status && needs->base.trajectory.frame_count != comparison->model.frame_count + 1)
+        status = ck_fail(error, CK_REFUSED, "%s: %s does not get through the whole scene: %s", comparison->path,
+                         engine->name, needs->whole.reason);
+    if (!status) list_cases(needs);
+    return status;
+}
+
+void ck_needs_free(ck_Needs *needs) {
+    ck_run_free(&needs->base);
+    *needs = (ck_Needs){0};
+}
+
+static void describe(const void *context, int index, char *key, size_t size) {
+    snprintf(key, size, "%s", ((const ck_Needs *)context)->cases[index].name);
+}
+
+enum { CPU, DISTANCE, METRICS };
+_Static_assert(METRICS + CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOURNAL_VALUES");
+
+static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Error *error) {
+    const ck_Needs *needs = context;
+    const ck_NeedsCase *one = &needs->cases[index];
+    const char *why = terms[one->term].cannot ? terms[one->term].cannot(needs->comparison->scene.file) : NULL;
+    if (why) {
+        row->status = CK_RUN_REFUSED;
+        snprintf(row->reason, sizeof row->reason, "not tried: %s", why);
+        return CK_OK;
+    }
+    Reduced *reduced = calloc(1, sizeof *reduced);
+    if (!reduced) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    copy_file(reduced, needs->comparison->scene.file);
+    terms[one->term].leave_out(reduced, one->collider);
+    const ck_Scene scene = {.file = &reduced->file, .document = needs->comparison->scene.document};
+    ck_Model model = {0};
+    ck_Measurement without;
+    ck_Run run = {0};
+    ck_Status status = ck_model_build(&model, &scene, error);
+    const ck_Settings wanted = needs->given;
+    const ck_Reference none = {.is_static = needs->comparison->truth.reference.is_static};
+    if (!status)
+        status = ck_measurement_take(&without, &model, &none, needs->engine, &wanted, &needs->limits, &run, error);
+    if (!status) {
+        row->status = (int)without.status;
+        snprintf(row->reason, sizeof row->reason, "%s", without.reason);
+        row->values[CPU] = without.cpu;
+        memcpy(row->values + METRICS, without.values, sizeof without.values);
+        if (!terms[one->term].moves_particles && run.trajectory.frame_count == needs->base.trajectory.frame_count)
+            row->values[DISTANCE] = ck_metric_deviation(ck_metric_find("position_rms"), &model, &run.trajectory,
+                                                        &needs->base.trajectory, &none);
+    }
+    ck_run_free(&run);
+    ck_model_free(&model);
+    free(reduced);
+    return status;
+}
+
+ck_Study ck_needs_study(const ck_Needs *needs) {
+    return (ck_Study){"needs", needs->case_count, (void *)needs, describe, run};
+}
+
+// By how much a metric changes: as it is where it is dimensionless, else relative. One that starts or ends to apply has
+// changed by more than any tolerance; where right is none (jitter, drift), only its values say anything.
+static double change_of(const ck_Metric *metric, double with, double without) {
+    bool is_of_motion = metric->truth == CK_TRUTH_OF_STATE;
+    if (isnan(with) && isnan(without)) return NAN;
+    if (isnan(with) || isnan(without)) return is_of_motion ? INFINITY : NAN;
+    double scale = strcmp(metric->unit, "1") ? fmax(fabs(with), fabs(without)) : 1;
+    return scale > 0 ? fabs(without - with) / scale : 0;
+}
+
+static bool add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, ck_Csv *csv, const char *metric,
+                    const char *unit, double with, double without, double change) {
+    bool matters = change > needs->tolerance;
+    if (isnan(change) && *metric) return false;
+    ck_csv_text(csv, needs->comparison->model.name);
+    ck_csv_text(csv, needs->engine->name);
+    ck_csv_text(csv, needs->cases[index].name);
+    ck_csv_text(csv, metric);
+    ck_csv_text(csv, unit);
+    ck_csv_number(csv, with);
+    ck_csv_number(csv, without);
+    ck_csv_number(csv, change);
+    ck_csv_number(csv, needs->tolerance);
+    ck_csv_text(csv, !*metric ? "" : matters ? "yes" : "no");
+    ck_csv_number(csv, needs->whole.cpu);
+    ck_csv_number(csv, row->values[CPU]);
+    ck_csv_text(csv, ck_run_status_names[row->status]);
+    ck_csv_text(csv, row->reason);
+    return matters;
+}
+
+void ck_needs_write(const ck_Needs *needs, const ck_JournalRow *rows, ck_Csv *csv) {
+    for (int i = 0; i < needs->case_count; i++) {
+        if (!rows[i].is_done) continue;
+        if (rows[i].status == CK_RUN_REFUSED) {
+            add_row(needs, &rows[i], i, csv, "", "", NAN, NAN, NAN);
+            printf("%-24s %s\n", needs->cases[i].name, rows[i].reason);
+            continue;
+        }
+        char changed[400] = "";
+        size_t used = 0;
+        for (int k = 0; k < ck_metric_count(); k++) {
+            const ck_Metric *metric = ck_metric_at(k);
+            double with = needs->whole.values[k], without = rows[i].values[METRICS + k];
+            bool is_distance = !strcmp(metric->name, "position_rms");
+            if (!ck_metric_is_wanted(metric, &needs->comparison->model)) continue;
+            double change = is_distance ? rows[i].values[DISTANCE] : change_of(metric, with, without);
+            if (!add_row(needs, &rows[i], i, csv, metric->name, metric->unit, is_distance ? NAN : with,
+                         is_distance ? NAN : without, change) ||
+                used >= sizeof changed)
+                continue;
+            const char *separator = used ? ", " : "";
+            used += (size_t)(isinf(change) ? snprintf(changed + used, sizeof changed - used, "%s%s (has none %s)",
+                                                      separator, metric->name, isnan(with) ? "with" : "without")
+                                           : snprintf(changed + used, sizeof changed - used, "%s%s by %.2g", separator,
+                                                      metric->name, change));
+        }
+        bool has_failed = isnan(rows[i].values[CPU]);
+        printf("%-24s %s%s (CPU %.3g s with, %.3g s without)\n", needs->cases[i].name,
+               has_failed ? "is needed to run at all: "
+               : used     ? "is needed: changes "
+                          : "is not needed",
+               has_failed ? rows[i].reason : changed, needs->whole.cpu, rows[i].values[CPU]);
+    }
+}

@@ -1,0 +1,232 @@
+#include "precision.h"
+
+#include "statistics.h"
+#include "trial.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_CASES_OF_ENGINE 40
+// Substeps up to which an engine is followed, however coarse its own rule is: first order shows late.
+#define FINEST 512.0
+// Points of a fit of order: the finest ones between these errors, and this many times the truth's uncertainty.
+#define COARSEST_FIT 0.02
+#define ABOVE_UNCERTAINTY 5
+#define MOST_FIT_POINTS 3
+
+enum { DT, SUBSTEPS, ITERATIONS, ERROR, SAG_ERROR, STRETCH_ERROR, CPU, CPU_RANGE };
+
+// What the engine's own rule sets; false where it does not take the scene.
+static bool find_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
+                           ck_Settings *used) {
+    void *state;
+    if (model->terms & ~engine->terms) return false;
+    if (engine->create(&state, model, wanted, used, NULL, NULL)) return false;
+    engine->destroy(state);
+    return true;
+}
+
+static void add_case(ck_Precision *precision, const ck_Engine *engine, ck_Settings settings, bool is_ladder) {
+    for (int i = 0; i < precision->case_count; i++) {
+        const ck_PrecisionCase *other = &precision->cases[i];
+        if (other->engine == engine && other->settings.substeps == settings.substeps &&
+            other->settings.iterations == settings.iterations)
+            return;
+    }
+    precision->cases[precision->case_count++] = (ck_PrecisionCase){engine, settings, is_ladder};
+}
+
+// factor times a count, at least 1.
+static uint32_t scaled(uint32_t count, double factor) {
+    return (uint32_t)fmax(1, round(count * factor));
+}
+
+static void add_engine(ck_Precision *precision, const ck_Engine *engine, const ck_CompareOptions *options) {
+    const ck_Model *model = &precision->comparison->model;
+    ck_Settings wanted = ck_comparison_settings(engine, &precision->comparison->scene, options), used;
+    if (!find_automatic(engine, model, &wanted, &used)) {
+        add_case(precision, engine, wanted, false); // its row says why
+        return;
+    }
+    int finest = (int)fmax(4, ceil(log2(FINEST / used.substeps)));
+    for (int power = -3; power <= finest; power++) {
+        ck_Settings settings = used;
+        settings.substeps = scaled(used.substeps, ldexp(1, power));
+        add_case(precision, engine, settings, true);
+    }
+    for (int power = -2; power <= 2 && used.iterations; power++)
+        for (int quarter = -1; quarter <= 1; quarter += 2) {
+            ck_Settings settings = used;
+            settings.substeps = scaled(used.substeps, ldexp(1, power));
+            settings.iterations = scaled(used.iterations, quarter < 0 ? 0.25 : 4);
+            add_case(precision, engine, settings, false);
+        }
+}
+
+ck_Status ck_precision_create(ck_Precision *precision, const ck_Comparison *comparison,
+                              const ck_CompareOptions *options, ck_Error *error) {
+    *precision = (ck_Precision){.comparison = comparison, .limits = options->limits, .repeats = options->repeats};
+    // the finest steps of a slow engine never end: most of the study's time went into waiting for that
+    precision->limits.foresees = true;
+    const ck_Reference *reference = &comparison->truth.reference;
+    if (!reference->trajectory.frame_count || reference->is_invariant)
+        return ck_fail(error, CK_BAD_INPUT,
+                       "%s: its truth has no positions to measure errors by; name one that has, such as equilibrium or "
+                       "trajectory",
+                       comparison->path);
+    precision->uncertainty =
+        ck_truth_uncertainty(&comparison->truth, &comparison->model, ck_metric_find("position_rms"));
+    precision->cases = calloc((size_t)options->engine_count * MOST_CASES_OF_ENGINE, sizeof *precision->cases);
+    if (!precision->cases) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < options->engine_count; i++)
+        if (options->engines[i]->method != CK_METHOD_STILL) add_engine(precision, options->engines[i], options);
+    return CK_OK;
+}
+
+void ck_precision_free(ck_Precision *precision) {
+    free(precision->cases);
+    *precision = (ck_Precision){0};
+}
+
+static void describe(const void *context, int index, char *key, size_t size) {
+    const ck_PrecisionCase *one = &((const ck_Precision *)context)->cases[index];
+    snprintf(key, size, "%s substeps %u iterations %u", one->engine->name, one->settings.substeps,
+             one->settings.iterations);
+}
+
+static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Error *error) {
+    const ck_Precision *precision = context;
+    const ck_PrecisionCase *one = &precision->cases[index];
+    ck_Trial trial;
+    ck_Status status = ck_trial_run(&trial, &precision->comparison->model, &precision->comparison->truth.reference,
+                                    NULL, one->engine, &one->settings, precision->repeats, &precision->limits, error);
+    row->status = (int)trial.status;
+    snprintf(row->reason, sizeof row->reason, "%s", trial.reason);
+    const double values[] = {trial.time_step, trial.used.substeps, trial.used.iterations,
+                             trial.error,     trial.sag_error,     trial.stretch_error,
+                             trial.cpu,       trial.cpu_range};
+    memcpy(row->values, values, sizeof values);
+    return status;
+}
+
+ck_Study ck_precision_study(const ck_Precision *precision) {
+    return (ck_Study){"precision", precision->case_count, (void *)precision, describe, run};
+}
+
+static bool counts(const ck_JournalRow *row) {
+    return row->is_done && row->status == CK_RUN_OK && row->values[ERROR] >= 0 && row->values[CPU] > 0;
+}
+
+// Nobody is both cheaper and as right. Errors below the truth's uncertainty are all alike, and so are those within a
+// twentieth of each other: at a floor they differ by rounding.
+static bool is_on_front(const ck_Precision *precision, const ck_JournalRow *rows, int index) {
+    double error = fmax(rows[index].values[ERROR], precision->uncertainty), cpu = rows[index].values[CPU];
+    for (int i = 0; i < precision->case_count && counts(&rows[index]); i++) {
+        if (!counts(&rows[i])) continue;
+        double other = fmax(rows[i].values[ERROR], precision->uncertainty);
+        if (other <= 1.05 * error && rows[i].values[CPU] < cpu) return false;
+    }
+    return counts(&rows[index]);
+}
+
+static void add_row(const ck_Precision *precision, const ck_JournalRow *rows, int index, ck_Csv *csv) {
+    const double *values = rows[index].values;
+    ck_csv_text(csv, precision->comparison->model.name);
+    ck_csv_text(csv, precision->cases[index].engine->name);
+    ck_csv_number(csv, values[SUBSTEPS]);
+    ck_csv_number(csv, values[ITERATIONS]);
+    ck_csv_number(csv, values[SUBSTEPS] * fmax(1, values[ITERATIONS]));
+    ck_csv_number(csv, values[DT]);
+    ck_csv_number(csv, precision->comparison->model.frame_count * precision->comparison->model.step);
+    ck_csv_text(csv, ck_run_status_names[rows[index].status]);
+    ck_csv_text(csv, rows[index].reason);
+    for (int i = ERROR; i <= CPU_RANGE; i++) ck_csv_number(csv, values[i]);
+    ck_csv_count(csv, is_on_front(precision, rows, index));
+}
+
+static void add_summary(const ck_Precision *precision, ck_Csv *csv, const ck_Engine *engine, const char *quantity,
+                        const char *unit, double value, double expected, const char *reason) {
+    ck_csv_text(csv, precision->comparison->model.name);
+    ck_csv_text(csv, engine->name);
+    ck_csv_text(csv, quantity);
+    ck_csv_text(csv, unit);
+    ck_csv_number(csv, value);
+    ck_csv_number(csv, expected);
+    ck_csv_text(csv, reason);
+}
+
+// The exponent p of error ~ dt^p over the finest points that the truth can tell; NaN with fewer than three.
+static double fit_order(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
+                        int *points) {
+    double x[MOST_FIT_POINTS], y[MOST_FIT_POINTS];
+    *points = 0;
+    // an engine's ladder goes from coarse to fine
+    for (int i = precision->case_count - 1; i >= 0 && *points < MOST_FIT_POINTS; i--) {
+        double error = rows[i].values[ERROR];
+        if (precision->cases[i].engine != engine || !precision->cases[i].is_ladder || !counts(&rows[i])) continue;
+        if (error > COARSEST_FIT || !(error > ABOVE_UNCERTAINTY * precision->uncertainty)) continue;
+        x[*points] = log(rows[i].values[DT]);
+        y[(*points)++] = log(error);
+    }
+    return *points < 3 ? NAN : ck_slope(x, y, *points);
+}
+
+static void summarise_order(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
+                            ck_Csv *csv) {
+    int points;
+    char reason[200];
+    // the error of a scene at rest is that of the rest: to move wrongly on the way to it costs nothing
+    bool is_static = precision->comparison->truth.reference.is_static;
+    bool is_damped = precision->comparison->model.terms & CK_TERM_DAMPING;
+    int theory = !is_static ? engine->order : is_damped ? engine->damped_rest_order : engine->rest_order;
+    double order = fit_order(precision, rows, engine, &points), expected = theory > 0 ? theory : NAN;
+    if (points < 3)
+        snprintf(reason, sizeof reason, "only %d steps have an error between %.3g and %g", points,
+                 ABOVE_UNCERTAINTY * precision->uncertainty, COARSEST_FIT);
+    else
+        snprintf(reason, sizeof reason, "least squares over the %d finest of the steps that the truth can tell",
+                 points);
+    bool is_exact = is_static && engine->order && !engine->rest_order;
+    if (is_exact)
+        snprintf(reason, sizeof reason, "at rest it is exact at any step: what is left is the truth's uncertainty");
+    add_summary(precision, csv, engine, "order", "1", is_exact ? NAN : order, expected, reason);
+}
+
+// The least error of any case of an engine, and the least time to come below each of three.
+static void summarise_costs(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
+                            ck_Csv *csv) {
+    static const struct {
+        const char *quantity;
+        double error;
+    } goals[] = {{"cost_to_10_percent", 0.1}, {"cost_to_1_percent", 0.01}, {"cost_to_0.1_percent", 0.001}};
+    double floor = INFINITY;
+    for (int i = 0; i < precision->case_count; i++)
+        if (precision->cases[i].engine == engine && counts(&rows[i])) floor = fmin(floor, rows[i].values[ERROR]);
+    add_summary(precision, csv, engine, "floor", "1", isfinite(floor) ? floor : NAN, NAN,
+                isfinite(floor) ? "least error of all cases" : "no case is ok");
+    for (size_t goal = 0; goal < sizeof goals / sizeof *goals; goal++) {
+        double cost = INFINITY;
+        char reason[120] = "least of all cases within";
+        for (int i = 0; i < precision->case_count; i++)
+            if (precision->cases[i].engine == engine && counts(&rows[i]) && rows[i].values[ERROR] <= goals[goal].error)
+                cost = fmin(cost, rows[i].values[CPU]);
+        if (!isfinite(cost) && isfinite(floor)) snprintf(reason, sizeof reason, "never: its floor is %.3g", floor);
+        if (!isfinite(floor)) snprintf(reason, sizeof reason, "never: no case is ok");
+        add_summary(precision, csv, engine, goals[goal].quantity, "s", isfinite(cost) ? cost : NAN, NAN, reason);
+    }
+}
+
+void ck_precision_write(const ck_Precision *precision, const ck_JournalRow *rows, ck_Csv *csv, ck_Csv *summary) {
+    const ck_Engine *last = NULL;
+    for (int i = 0; i < precision->case_count; i++)
+        if (rows[i].is_done) add_row(precision, rows, i, csv);
+    for (int i = 0; i < precision->case_count; i++) {
+        const ck_Engine *engine = precision->cases[i].engine;
+        if (engine == last) continue;
+        last = engine;
+        summarise_order(precision, rows, engine, summary);
+        summarise_costs(precision, rows, engine, summary);
+    }
+}

@@ -1,0 +1,362 @@
+#include "equilibrium.h"
+
+#include "process.h"
+
+#include "metric.h"
+#include "random.h"
+#include "runge_kutta.h"
+#include "springs.h"
+#include "time_scale.h"
+#include "vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <suitesparse/cholmod.h>
+
+#define MAX_ITERATIONS 2000
+
+typedef struct Newton {
+    const ck_Model *model;
+    int *unknown; // [n] of each particle, −1 where pinned
+    int unknowns; // free particles
+    double load;  // N
+    double scale; // N/m, the stiffest spring: what μ is measured in
+    cholmod_common common;
+    cholmod_triplet *triplet;
+    cholmod_factor *factor;
+    cholmod_dense *gradient;
+    double *position, *trial; // [3*n]
+} Newton;
+
+// Energy, and its gradient over all coordinates, pinned ones too, where gradient is not NULL.
+static double energy_of(const ck_Model *model, const double *position, double *gradient) {
+    double energy = 0;
+    if (gradient) memset(gradient, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double d[3];
+        ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
+        double length = ck_length(d), stretch = length - spring->rest;
+        energy += 0.5 * spring->stiffness * stretch * stretch;
+        if (!gradient || !(length > 0)) continue;
+        ck_add_scaled(gradient + 3 * spring->a, -spring->stiffness * stretch / length, d);
+        ck_add_scaled(gradient + 3 * spring->b, spring->stiffness * stretch / length, d);
+    }
+    for (int i = 0; i < model->particle_count; i++) {
+        double field[3], moved[3];
+        if (model->pinned[i]) continue;
+        ck_model_field(model, i, field);
+        ck_subtract(moved, position + 3 * i, model->position + 3 * i);
+        energy -= model->mass[i] * ck_dot(field, moved);
+        if (gradient) ck_add_scaled(gradient + 3 * i, -model->mass[i], field);
+    }
+    return energy;
+}
+
+double ck_equilibrium_energy(const ck_Model *model, const double *position) {
+    return energy_of(model, position, NULL);
+}
+
+static double norm_of_free(const ck_Model *model, const double *gradient) {
+    double sum = 0;
+    for (int i = 0; i < model->particle_count; i++)
+        if (!model->pinned[i]) sum += ck_dot(gradient + 3 * i, gradient + 3 * i);
+    return sqrt(sum);
+}
+
+double ck_equilibrium_residual(const ck_Model *model, const double *position) {
+    double *gradient = malloc(3 * sizeof(double) * (size_t)model->particle_count);
+    if (!gradient) return -1;
+    energy_of(model, position, gradient);
+    double residual = norm_of_free(model, gradient) / ck_stability_load(model);
+    free(gradient);
+    return residual;
+}
+
+// Adds one 3×3 block below or on the diagonal; the triplet's duplicates are summed by CHOLMOD.
+static void add_block(Newton *newton, int row, int column, const double *block, double sign) {
+    cholmod_triplet *triplet = newton->triplet;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int r = 3 * row + i, c = 3 * column + j;
+            if (r < c) continue;
+            ((int *)triplet->i)[triplet->nnz] = r;
+            ((int *)triplet->j)[triplet->nnz] = c;
+            ((double *)triplet->x)[triplet->nnz++] = sign * block[3 * i + j];
+        }
+}
+
+// k·[n·nᵀ + (1 − L/l)·(I − n·nᵀ)] of every spring, and shift on the diagonal.
+static void assemble(Newton *newton, double shift) {
+    const ck_Model *model = newton->model;
+    newton->triplet->nnz = 0;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        double d[3], block[9];
+        ck_subtract(d, newton->position + 3 * spring->b, newton->position + 3 * spring->a);
+        double length = ck_length(d), across = 1 - spring->rest / length;
+        for (int row = 0; row < 3; row++)
+            for (int column = 0; column < 3; column++)
+                block[3 * row + column] = spring->stiffness * ((1 - across) * d[row] * d[column] / (length * length) +
+                                                               (row == column ? across : 0));
+        int a = newton->unknown[spring->a], b = newton->unknown[spring->b];
+        if (a >= 0) add_block(newton, a, a, block, 1);
+        if (b >= 0) add_block(newton, b, b, block, 1);
+        if (a >= 0 && b >= 0) add_block(newton, a > b ? a : b, a > b ? b : a, block, -1);
+    }
+    const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int i = 0; i < newton->unknowns; i++) add_block(newton, i, i, identity, shift);
+}
+
+// Factorises the Hessian plus shift·I. False where that is not positive definite.
+static bool factorise(Newton *newton, double shift) {
+    assemble(newton, shift);
+    cholmod_sparse *hessian = cholmod_triplet_to_sparse(newton->triplet, 0, &newton->common);
+    if (!hessian) return false;
+    if (!newton->factor) newton->factor = cholmod_analyze(hessian, &newton->common);
+    cholmod_factorize(hessian, newton->factor, &newton->common);
+    bool definite = newton->common.status == CHOLMOD_OK && newton->factor->minor == newton->factor->n;
+    cholmod_free_sparse(&hessian, &newton->common);
+    return definite;
+}
+
+static ck_Status start_newton(Newton *newton, const ck_Model *model, const double *start) {
+    *newton = (Newton){.model = model, .load = ck_stability_load(model)};
+    size_t count = (size_t)model->particle_count;
+    newton->unknown = malloc(count * sizeof(int));
+    newton->position = malloc(3 * count * sizeof(double));
+    newton->trial = malloc(3 * count * sizeof(double));
+    cholmod_start(&newton->common);
+    newton->common.print = 0;
+    newton->common.quick_return_if_not_posdef = 1;
+    newton->common.final_ll = 1; // LDLᵀ would go on past a negative pivot
+    if (!newton->unknown || !newton->position || !newton->trial) return CK_NO_MEMORY;
+    memcpy(newton->position, start, 3 * count * sizeof(double));
+    for (size_t i = 0; i < count; i++) newton->unknown[i] = model->pinned[i] ? -1 : newton->unknowns++;
+    for (int i = 0; i < model->spring_count; i++) newton->scale = fmax(newton->scale, model->springs[i].stiffness);
+    size_t size = 3 * (size_t)newton->unknowns,
+           entries = 21 * (size_t)model->spring_count + 6 * (size_t)newton->unknowns;
+    newton->triplet = cholmod_allocate_triplet(size, size, entries, -1, CHOLMOD_REAL, &newton->common);
+    newton->gradient = cholmod_allocate_dense(size, 1, size, CHOLMOD_REAL, &newton->common);
+    return newton->triplet && newton->gradient ? CK_OK : CK_NO_MEMORY;
+}
+
+static void end_newton(Newton *newton) {
+    cholmod_free_triplet(&newton->triplet, &newton->common);
+    cholmod_free_dense(&newton->gradient, &newton->common);
+    cholmod_free_factor(&newton->factor, &newton->common);
+    cholmod_finish(&newton->common);
+    free(newton->unknown);
+    free(newton->trial);
+    free(newton->position);
+}
+
+static void pack(const Newton *newton, const double *all) {
+    for (int i = 0; i < newton->model->particle_count; i++)
+        if (newton->unknown[i] >= 0)
+            memcpy((double *)newton->gradient->x + 3 * newton->unknown[i], all + 3 * i, 3 * sizeof(double));
+}
+
+// Halves the step until the energy falls, or, where rounding hides that, the residual does. False where neither does.
+static bool search_line(Newton *newton, const double *step, double *energy, double *residual, double *gradient) {
+    const ck_Model *model = newton->model;
+    for (double length = 1; length > 1e-10; length *= 0.5) {
+        memcpy(newton->trial, newton->position, 3 * sizeof(double) * (size_t)model->particle_count);
+        for (int i = 0; i < model->particle_count; i++)
+            if (newton->unknown[i] >= 0) ck_add_scaled(newton->trial + 3 * i, -length, step + 3 * newton->unknown[i]);
+        double trial_energy = energy_of(model, newton->trial, gradient),
+               trial_residual = norm_of_free(model, gradient) / newton->load;
+        bool flat = fabs(trial_energy - *energy) <= 1e-12 * fmax(fabs(*energy), newton->load * model->size * 1e-3);
+        if (!(trial_energy < *energy && !flat) && !(flat && trial_residual < *residual)) continue;
+        double *swapped = newton->position;
+        newton->position = newton->trial;
+        newton->trial = swapped;
+        *energy = trial_energy;
+        *residual = trial_residual;
+        return true;
+    }
+    return false;
+}
+
+// Iterates until no step improves any more, which is beyond the residual that is asked for: a truth's last digits
+// count.
+static int iterate(Newton *newton, double *energy, double *residual, double *gradient) {
+    double shift = 0;
+    int iteration = 0;
+    *energy = energy_of(newton->model, newton->position, gradient);
+    *residual = norm_of_free(newton->model, gradient) / newton->load;
+    for (; iteration < MAX_ITERATIONS && !ck_child_interrupted; iteration++) {
+        bool definite = factorise(newton, shift);
+        while (!definite && shift < 1e6 * newton->scale) {
+            shift = fmax(4 * shift, 1e-6 * newton->scale);
+            definite = factorise(newton, shift);
+        }
+        energy_of(newton->model, newton->position, gradient);
+        pack(newton, gradient);
+        cholmod_dense *step =
+            definite ? cholmod_solve(CHOLMOD_A, newton->factor, newton->gradient, &newton->common) : NULL;
+        double before = *residual;
+        bool moved = step && search_line(newton, step->x, energy, residual, gradient);
+        cholmod_free_dense(&step, &newton->common);
+        if (!moved) break;
+        if (shift == 0 && *residual<CK_EQUILIBRIUM_RESIDUAL && * residual> 0.5 * before) break; // rounding is reached
+        shift = shift > 1e-9 * newton->scale ? shift / 10 : 0;
+    }
+    return iteration;
+}
+
+ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
+                               ck_Error *error) {
+    *equilibrium = (ck_Equilibrium){0};
+    if ((model->terms & (CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)) || !model->pin_count ||
+        !(ck_stability_load(model) > 0))
+        return ck_fail(error, CK_REFUSED,
+                       "%s: equilibrium needs pins that stay, a load, springs that stretch, and no colliders",
+                       model->name);
+    Newton newton;
+    ck_Status status = start_newton(&newton, model, start);
+    double *gradient = malloc(3 * sizeof(double) * (size_t)model->particle_count);
+    if (status || !gradient) {
+        status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+        goto cleanup;
+    }
+    equilibrium->iterations = iterate(&newton, &equilibrium->energy, &equilibrium->residual, gradient);
+    equilibrium->is_minimum = factorise(&newton, 0);
+    equilibrium->position = newton.position;
+    newton.position = NULL;
+    if (!(equilibrium->residual <= CK_EQUILIBRIUM_RESIDUAL) || !equilibrium->is_minimum)
+        status =
+            ck_fail(error, CK_REFUSED, "%s: no stable equilibrium: Newton stopped at %.2g of the load%s", model->name,
+                    equilibrium->residual, equilibrium->is_minimum ? "" : ", where the energy has no minimum");
+cleanup:
+    free(gradient);
+    end_newton(&newton);
+    return status;
+}
+
+struct ck_Stiffness {
+    Newton newton;
+};
+
+ck_Status ck_stiffness_create(ck_Stiffness **out, const ck_Model *model, const double *position) {
+    ck_Stiffness *stiffness = *out = calloc(1, sizeof *stiffness);
+    if (!stiffness) return CK_NO_MEMORY;
+    ck_Status status = start_newton(&stiffness->newton, model, position);
+    if (!status && !factorise(&stiffness->newton, 0)) status = CK_REFUSED;
+    if (!status) return CK_OK;
+    ck_stiffness_destroy(stiffness);
+    *out = NULL;
+    return status;
+}
+
+ck_Status ck_stiffness_solve(ck_Stiffness *stiffness, const double *force, double *moved) {
+    Newton *newton = &stiffness->newton;
+    pack(newton, force);
+    cholmod_dense *step = cholmod_solve(CHOLMOD_A, newton->factor, newton->gradient, &newton->common);
+    if (!step) return CK_NO_MEMORY;
+    memset(moved, 0, 3 * sizeof(double) * (size_t)newton->model->particle_count);
+    for (int i = 0; i < newton->model->particle_count; i++)
+        if (newton->unknown[i] >= 0)
+            memcpy(moved + 3 * i, (double *)step->x + 3 * newton->unknown[i], 3 * sizeof(double));
+    cholmod_free_dense(&step, &newton->common);
+    return CK_OK;
+}
+
+void ck_stiffness_destroy(ck_Stiffness *stiffness) {
+    if (!stiffness) return;
+    end_newton(&stiffness->newton);
+    free(stiffness);
+}
+
+// A body on its way to rest; arrays [3*n].
+typedef struct Fall {
+    const ck_Model *model;
+    double dt;
+    double *position, *velocity, *acceleration, *predicted;
+} Fall;
+
+// Velocity Verlet with the velocity predicted: of second order with damping, too. No engine's code: which rest a body
+// falls into is for the truth to say. Source: Groot and Warren 1997, eq. 10 with λ = 1.
+static void fall_by_a_step(const Fall *fall) {
+    const double dt = fall->dt;
+    for (int i = 0; i < 3 * fall->model->particle_count; i++) {
+        fall->position[i] += dt * (fall->velocity[i] + 0.5 * dt * fall->acceleration[i]);
+        fall->predicted[i] = fall->velocity[i] + dt * fall->acceleration[i];
+        fall->velocity[i] += 0.5 * dt * fall->acceleration[i];
+    }
+    ck_springs_accelerate(fall->model, fall->position, fall->predicted, fall->acceleration);
+    for (int i = 0; i < 3 * fall->model->particle_count; i++) fall->velocity[i] += 0.5 * dt * fall->acceleration[i];
+}
+
+// Half of the step at which the stiffest motion grows, and a quarter of the time in which drag takes a speed.
+static ck_Status choose_step(const ck_Model *model, uint32_t *substeps) {
+    double frequency;
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    if (status) return status;
+    double damping = frequency * frequency * ck_stability_damping_time(model) + model->drag;
+    double limit = fmin(ck_stability_drag_time(model, 0.25), 0.5 * ck_stability_verlet_limit(frequency, damping));
+    *substeps = ck_stability_substeps(model, limit);
+    return CK_OK;
+}
+
+// The speed of the fastest particle, m/s; NaN where any has left the finite numbers.
+static double fastest(const Fall *fall) {
+    double largest = 0, sum = 0;
+    for (int i = 0; i < fall->model->particle_count; i++) {
+        double speed = ck_length(fall->velocity + 3 * i);
+        largest = fmax(largest, speed);
+        sum += speed;
+    }
+    return isfinite(sum) ? largest : NAN;
+}
+
+// Steps a copy of the model, nudged, until it stays still or its duration ends.
+//   position  [3*n] out, m
+static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, double *position, ck_Error *error) {
+    size_t count = 3 * (size_t)model->particle_count;
+    double *memory = malloc(3 * count * sizeof *memory);
+    ck_Model moved = *model;
+    // without damping it would swing for ever: then the drag that is critical for a pendulum of its size
+    if (moved.drag == 0 && !(moved.terms & CK_TERM_DAMPING))
+        moved.drag = 2 * sqrt(ck_stability_load(model) / ck_model_free_mass(model) / model->size);
+    uint32_t substeps;
+    if (!memory || choose_step(&moved, &substeps)) {
+        free(memory);
+        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    }
+    const Fall fall = {&moved, model->step / substeps, position, memory, memory + count, memory + 2 * count};
+    memcpy(position, model->position, count * sizeof *position);
+    memcpy(fall.velocity, model->velocity, count * sizeof *memory);
+    ck_Random random = ck_random_seed(seed);
+    for (size_t i = 0; i < count; i++) {
+        double offset = nudge * (2 * ck_random_unit(&random) - 1);
+        if (!model->pinned[i / 3]) position[i] += offset;
+    }
+    ck_springs_accelerate(&moved, position, fall.velocity, fall.acceleration);
+    ck_Status status = CK_OK;
+    double still = ck_metric_still_speed(model), speed = INFINITY;
+    for (int frame = 0; frame < model->frame_count && !(frame > 10 && speed < still) && !status; frame++) {
+        for (uint32_t i = 0; i < substeps && !ck_child_interrupted; i++) fall_by_a_step(&fall);
+        speed = fastest(&fall);
+        status = speed >= 0 ? ck_child_check(error)
+                            : ck_fail(error, CK_REFUSED, "%s: diverges on the way to its equilibrium", model->name);
+    }
+    free(memory);
+    return status;
+}
+
+ck_Status ck_equilibrium_release(ck_Equilibrium *equilibrium, const ck_Model *model, double nudge, uint64_t seed,
+                                 ck_Error *error) {
+    *equilibrium = (ck_Equilibrium){0};
+    double *position = malloc(3 * sizeof(double) * (size_t)model->particle_count);
+    if (!position) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    ck_Status status = settle(model, nudge, seed, position, error);
+    if (!status) status = ck_equilibrium_solve(equilibrium, model, position, error);
+    free(position);
+    return status;
+}
+
+void ck_equilibrium_free(ck_Equilibrium *equilibrium) {
+    free(equilibrium->position);
+    *equilibrium = (ck_Equilibrium){0};
+}

@@ -1,0 +1,352 @@
+#include "motion_forms.h"
+
+#include "rest_forms.h"
+#include "shape.h"
+#include "springs.h"
+#include "time_scale.h"
+#include "vector.h"
+
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+// One mode of a rope of equal masses: its shape over particles 0 … n, its frequency and decay.
+typedef struct Mode {
+    double (*shape)(int n, int particle, double parameter);
+    double parameter;
+    double frequency; // rad/s, without damping
+    double decay;     // 1/s, of the amplitude
+} Mode;
+
+// q'' + 2·decay·q' + frequency²·q = 0 from q = 0 and a given speed, below or above critical damping.
+static void ring(const Mode *mode, double speed, double time, double *q, double *rate) {
+    double square = mode->frequency * mode->frequency - mode->decay * mode->decay, fade = exp(-mode->decay * time);
+    double root = sqrt(fabs(square)), sine = square > 0 ? sin(root * time) : sinh(root * time),
+           cosine = square > 0 ? cos(root * time) : cosh(root * time);
+    *q = root > 0 ? speed * fade * sine / root : speed * fade * time;
+    *rate = speed * fade * cosine - mode->decay * *q;
+}
+
+// Adds what the mode makes of the start velocity.
+static void add_mode(const ck_Model *model, const Mode *mode, double time, double *position, double *velocity) {
+    int n = model->particle_count - 1;
+    double start[3] = {0}, norm = 0;
+    for (int i = 0; i <= n; i++) {
+        if (model->pinned[i]) continue;
+        double shape = mode->shape(n, i, mode->parameter);
+        norm += shape * shape;
+        ck_add_scaled(start, shape, model->velocity + 3 * i);
+    }
+    double q, rate;
+    ring(mode, 1, time, &q, &rate);
+    for (int i = 0; i <= n; i++) {
+        if (model->pinned[i]) continue;
+        double share = mode->shape(n, i, mode->parameter) / norm;
+        ck_add_scaled(position + 3 * i, share * q, start);
+        ck_add_scaled(velocity + 3 * i, share * rate, start);
+    }
+}
+
+static void start_from(const ck_Model *model, double *position, double *velocity) {
+    memcpy(position, model->position, 3 * sizeof(double) * (size_t)model->particle_count);
+    memset(velocity, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+}
+
+// The most modes that a path is summed of: each frame costs their square.
+#define MAX_MODES 1000
+
+// A chain stopped from speed v strains its springs by at most v/(d·√(k/m)); below 1 no particle passes its neighbour.
+static bool is_gentle(const ck_Model *model) {
+    const ck_Spring *spring = &model->springs[0];
+    return ck_length(model->velocity + 3) < 0.5 * spring->rest * sqrt(spring->stiffness / model->mass[0]);
+}
+
+static double sine_shape(int n, int particle, double parameter) {
+    (void)n;
+    return sin(parameter * particle);
+}
+
+static bool has_field(const ck_Model *model) {
+    return model->terms & (CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE);
+}
+
+static bool has_equal_masses(const ck_Model *model) {
+    for (int i = 1; i < model->particle_count; i++)
+        if (fabs(model->mass[i] - model->mass[0]) > 1e-12 * model->mass[0]) return false;
+    return true;
+}
+
+// |cos| of the angle between the start velocity of the last free particle and the rope.
+static double velocity_along(const ck_Model *model) {
+    double along[3];
+    const double *velocity = model->velocity + 3;
+    ck_subtract(along, model->position + 3, model->position);
+    double scale = ck_length(along) * ck_length(velocity);
+    return scale > 0 ? fabs(ck_dot(along, velocity)) / scale : NAN;
+}
+
+ck_Status ck_truth_longitudinal_modes(const ck_Model *model, double time, double *position, double *velocity,
+                                      ck_Error *error) {
+    bool fits = ck_shape_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && !has_field(model) &&
+                has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) && velocity_along(model) > 1 - 1e-12 &&
+                model->particle_count <= MAX_MODES && ck_springs_start_at_rest(model) && is_gentle(model);
+    ck_Status status = ck_truth_need(fits, model, error,
+                                     "a straight rope of at most 1000 equal springs and masses, pinned at its first "
+                                     "particle, thrown along itself so gently that no spring turns over, and no other "
+                                     "force than drag");
+    if (status) return status;
+    const int n = model->particle_count - 1;
+    const ck_Spring *spring = &model->springs[0];
+    start_from(model, position, velocity);
+    for (int j = 1; j <= n; j++) {
+        double frequency = 2 * sqrt(spring->stiffness / model->mass[0]) * sin((2 * j - 1) * pi / (2 * (2 * n + 1)));
+        // spring damping is proportional to stiffness, so that each mode has a decay of its own
+        double decay = 0.5 * (model->drag + spring->damping / spring->stiffness * frequency * frequency);
+        add_mode(model, &(Mode){sine_shape, (2 * j - 1) * pi / (2 * n + 1), frequency, decay}, time, position,
+                 velocity);
+    }
+    return CK_OK;
+}
+
+ck_Status ck_truth_oscillator(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
+    ck_Status status = ck_truth_need(model->particle_count == 2, model, error, "two particles");
+    return status ? status : ck_truth_longitudinal_modes(model, time, position, velocity, error);
+}
+
+static double string_tension(const ck_Model *model) {
+    return model->springs[0].stiffness * (model->spacing - model->springs[0].rest);
+}
+
+ck_Status ck_truth_taut_string(const ck_Model *model, double time, double *position, double *velocity,
+                               ck_Error *error) {
+    int last = model->particle_count - 1;
+    bool fits = ck_shape_is_even_chain(model) && model->pin_count == 2 && model->pinned[0] && model->pinned[last] &&
+                !has_field(model) && has_equal_masses(model) && !(model->terms & CK_TERM_RIGID) &&
+                velocity_along(model) < 1e-12 && string_tension(model) > 0;
+    ck_Status status = ck_truth_need(fits, model, error,
+                                     "a straight rope with prestretch, equal springs and masses, pinned at both ends, "
+                                     "thrown sideways, and no other force than drag");
+    if (status) return status;
+    start_from(model, position, velocity);
+    for (int j = 1; j < last; j++) {
+        double frequency =
+            2 * sqrt(string_tension(model) / (model->mass[0] * model->spacing)) * sin(j * pi / (2 * last));
+        add_mode(model, &(Mode){sine_shape, j * pi / last, frequency, 0.5 * model->drag}, time, position, velocity);
+    }
+    return CK_OK;
+}
+
+// A slope s = v/c, c the wave speed, draws points along the string by up to s²/2 of its length, raises the tension by
+// k·d·s²/2, and so the phase ω·t of the first mode by half that share, times the amplitude v/ω.
+double ck_truth_taut_string_off(const ck_Model *model) {
+    double tension = string_tension(model), wave = sqrt(tension * model->spacing / model->mass[0]),
+           speed = ck_length(model->velocity + 3);
+    double slope = speed / wave, share = 0.25 * model->springs[0].stiffness * model->spacing / tension * slope * slope;
+    return 0.5 * slope * slope + share * speed * model->duration / model->size;
+}
+
+// Laguerre polynomial by its three-term recurrence.
+static double laguerre(int degree, double x) {
+    double before = 1, now = 1 - x;
+    if (degree == 0) return before;
+    for (int k = 1; k < degree; k++) {
+        double next = ((2 * k + 1 - x) * now - k * before) / (k + 1);
+        before = now;
+        now = next;
+    }
+    return now;
+}
+
+// The j-th zero, j = 1 …, between the sign changes of a scan: neighbouring zeros of degree ≤ 60 lie more than 0.02
+// apart near 0 and farther above, and the largest is below 4N + 2.
+static double laguerre_zero(int degree, int j) {
+    double step = 0.2 / (degree + 1), low = 0;
+    for (; j > 0; low += step)
+        if (laguerre(degree, low) * laguerre(degree, low + step) <= 0) j--;
+    double high = low;
+    low -= step;
+    for (int i = 0; i < 100; i++) {
+        double middle = 0.5 * (low + high);
+        if (laguerre(degree, low) * laguerre(degree, middle) <= 0)
+            high = middle;
+        else
+            low = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+// counted from the free end
+static double laguerre_shape(int n, int particle, double parameter) {
+    return laguerre(n - particle, parameter);
+}
+
+// Links keep their length: one that leans by d sideways is d²/2l less deep, to second order. So its energy is what the
+// modes' is.
+static void lift(const ck_Model *model, double *position, double *velocity) {
+    double along[3], rise = 0, rate = 0;
+    ck_subtract(along, model->position + 3, model->position);
+    for (int axis = 0; axis < 3; axis++) along[axis] /= model->spacing;
+    for (int i = 1; i < model->particle_count; i++) {
+        double lean[3], turn[3];
+        ck_subtract(lean, position + 3 * i, position + 3 * i - 3);
+        ck_subtract(turn, velocity + 3 * i, velocity + 3 * i - 3);
+        // what is above has been lifted already
+        ck_tangential(lean, lean, along);
+        ck_tangential(turn, turn, along);
+        rise += ck_dot(lean, lean) / (2 * model->spacing);
+        rate += ck_dot(lean, turn) / model->spacing;
+        ck_add_scaled(position + 3 * i, -rise, along);
+        ck_add_scaled(velocity + 3 * i, -rate, along);
+    }
+}
+
+// Springs that start at rest length bounce about their stretch under the weight below, in the longitudinal modes.
+static void add_bounce(const ck_Model *model, double time, double *position, double *velocity) {
+    const int n = model->particle_count - 1;
+    const ck_Spring *spring = &model->springs[0];
+    double along[3], weight = model->mass[0] * ck_length(model->gravity);
+    ck_subtract(along, model->position + 3, model->position);
+    for (int axis = 0; axis < 3; axis++) along[axis] /= model->spacing;
+    for (int j = 1; j <= n; j++) {
+        double parameter = (2 * j - 1) * pi / (2 * n + 1), rest = 0, norm = 0, q, rate;
+        double frequency = 2 * sqrt(spring->stiffness / model->mass[0]) * sin(0.5 * parameter);
+        double decay = 0.5 * (model->drag + spring->damping / spring->stiffness * frequency * frequency);
+        for (int i = 1; i <= n; i++) {
+            double shape = sine_shape(n, i, parameter);
+            rest += shape * weight * (i * (double)n - 0.5 * i * (i - 1.0)) / spring->stiffness;
+            norm += shape * shape;
+        }
+        // let go from −rest: the step response is rest·(1 − q' − 2·decay·q) of the unit impulse response q
+        ring(&(Mode){sine_shape, parameter, frequency, decay}, 1, time, &q, &rate);
+        for (int i = 1; i <= n; i++) {
+            double share = sine_shape(n, i, parameter) * rest / norm;
+            ck_add_scaled(position + 3 * i, share * (1 - rate - 2 * decay * q), along);
+            ck_add_scaled(velocity + 3 * i, share * frequency * frequency * q, along);
+        }
+    }
+}
+
+ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *position, double *velocity,
+                                 ck_Error *error) {
+    double along[3], g = ck_length(model->gravity);
+    bool fits = ck_shape_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && has_equal_masses(model) &&
+                model->particle_count <= 61 && ck_springs_start_at_rest(model) && g > 0 &&
+                velocity_along(model) < 1e-12 &&
+                !(model->terms & (CK_TERM_FORCE | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE));
+    if (fits) {
+        ck_subtract(along, model->position + 3, model->position);
+        fits = ck_dot(along, model->gravity) > (1 - 1e-12) * ck_length(along) * g;
+    }
+    ck_Status status = ck_truth_need(
+        fits, model, error,
+        "a rope of at most 61 equal masses and springs at rest length, hanging straight from its first particle in "
+        "gravity, thrown sideways, and no other force than drag");
+    if (status) return status;
+    const int n = model->particle_count - 1;
+    start_from(model, position, velocity);
+    for (int j = 1; j <= n; j++) {
+        double zero = laguerre_zero(n, j);
+        add_mode(model, &(Mode){laguerre_shape, zero, sqrt(g / model->spacing * zero), 0.5 * model->drag}, time,
+                 position, velocity);
+    }
+    lift(model, position, velocity);
+    if (!(model->terms & CK_TERM_RIGID)) add_bounce(model, time, position, velocity);
+    return CK_OK;
+}
+
+// Let go unstretched, it bounces to twice the strain at rest. Swinging by an angle s = v/√(g·L), which the thinning
+// tension about doubles at the free end, lifts points by (2s)²/2. Both change frequencies by half their share, and so
+// the phase ω·t times the amplitude v/ω.
+double ck_truth_hanging_chain_off(const ck_Model *model) {
+    double speed = ck_length(model->velocity + 3), g = ck_length(model->gravity);
+    double strain = isinf(model->springs[0].stiffness)
+                        ? 0
+                        : ck_stability_load(model) / model->springs[0].stiffness / model->spacing;
+    double angle = speed / sqrt(g * model->size);
+    return 2 * strain + 2 * angle * angle + (strain + angle * angle) * speed * model->duration / model->size;
+}
+
+// Jacobi's sn, cn, dn by the arithmetic–geometric mean. Source: Abramowitz and Stegun 16.4.
+static void jacobi(double u, double modulus, double *sn, double *cn, double *dn) {
+    double a[16], c[16], b = sqrt(1 - modulus * modulus);
+    int last = 0;
+    a[0] = 1;
+    c[0] = modulus;
+    while (last < 15 && fabs(c[last]) > 1e-17) {
+        a[last + 1] = 0.5 * (a[last] + b);
+        c[last + 1] = 0.5 * (a[last] - b);
+        b = sqrt(a[last] * b);
+        last++;
+    }
+    double phase = ldexp(a[last] * u, last);
+    for (int i = last; i > 0; i--) phase = 0.5 * (phase + asin(c[i] * sin(phase) / a[i]));
+    *sn = sin(phase);
+    *cn = cos(phase);
+    *dn = sqrt(1 - modulus * modulus * *sn * *sn);
+}
+
+ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
+    unsigned others =
+        CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE;
+    double g = ck_length(model->gravity), bar[3] = {0}, side[3] = {0}, down[3],
+           length = model->spring_count ? model->springs[0].rest : 1, start = 0;
+    bool fits = model->particle_count == 2 && model->spring_count == 1 && model->pinned[0] && !model->pinned[1] &&
+                g > 0 && (model->terms & CK_TERM_RIGID) && !(model->terms & others) && ck_springs_start_at_rest(model);
+    if (fits) {
+        ck_subtract(bar, model->position + 3, model->position);
+        for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;
+        memcpy(side, bar, sizeof side);
+        ck_add_scaled(side, -ck_dot(bar, down), down);
+        start = atan2(ck_length(side), ck_dot(bar, down));
+        fits = start > 1e-6 && start < pi - 1e-6;
+    }
+    ck_Status status = ck_truth_need(
+        fits, model, error, "one rigid bar from a pin, let go at rest off the vertical in gravity, and no other term");
+    if (status) return status;
+    double reach = ck_length(side), modulus = sin(0.5 * start), rate = sqrt(g / length), sn, cn, dn;
+    jacobi(rate * time, modulus, &sn, &cn, &dn);
+    double half = modulus * cn / dn, angle = 2 * asin(half);
+    double speed = -2 * modulus * rate * (1 - modulus * modulus) * sn / (dn * dn) / sqrt(1 - half * half);
+    start_from(model, position, velocity);
+    memcpy(position + 3, position, 3 * sizeof(double));
+    ck_add_scaled(position + 3, length * cos(angle), down);
+    ck_add_scaled(position + 3, length * sin(angle) / reach, side);
+    ck_add_scaled(velocity + 3, -length * speed * sin(angle), down);
+    ck_add_scaled(velocity + 3, length * speed * cos(angle) / reach, side);
+    return CK_OK;
+}
+
+void ck_truth_nudge_pendulum(ck_Model *model, double share) {
+    double bar[3], down[3];
+    ck_subtract(bar, model->position + 3, model->position);
+    double length = ck_length(bar), g = ck_length(model->gravity);
+    for (int axis = 0; axis < 3; axis++) {
+        bar[axis] /= length;
+        down[axis] = model->gravity[axis] / g;
+    }
+    ck_tangential(down, down, bar);
+    ck_add_scaled(bar, share / ck_length(down), down);
+    double turned = ck_length(bar);
+    memcpy(model->position + 3, model->position, 3 * sizeof(double));
+    ck_add_scaled(model->position + 3, length / turned, bar);
+}
+
+ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *position, double *velocity,
+                                  ck_Error *error) {
+    ck_Status status = ck_truth_need(ck_shape_is_falling(model) && model->drag > 0, model, error,
+                                     "a body without pins, colliders and noise, with drag");
+    if (status) return status;
+    double fade = exp(-model->drag * time);
+    start_from(model, position, velocity);
+    for (int i = 0; i < model->particle_count; i++) {
+        double terminal[3], surplus[3];
+        ck_model_field(model, i, terminal);
+        for (int axis = 0; axis < 3; axis++) terminal[axis] /= model->drag;
+        ck_subtract(surplus, model->velocity + 3 * i, terminal);
+        ck_add_scaled(position + 3 * i, time, terminal);
+        ck_add_scaled(position + 3 * i, (1 - fade) / model->drag, surplus);
+        ck_add_scaled(velocity + 3 * i, 1, terminal);
+        ck_add_scaled(velocity + 3 * i, fade, surplus);
+    }
+    return CK_OK;
+}

@@ -1,0 +1,33 @@
+// Closed forms of motion: small vibrations as sums of modes, the pendulum at any amplitude, falling with drag.
+// All but the *_off have the signature of ck_TruthForm.at.
+#ifndef CK_MOTION_FORMS_H
+#define CK_MOTION_FORMS_H
+
+#include "model.h"
+
+// A rope pinned at its first particle, thrown along itself; no field. Drag and spring damping as they are. Exact.
+ck_Status ck_truth_longitudinal_modes(const ck_Model *model, double time, double *position, double *velocity,
+                                      ck_Error *error);
+
+// The same with a single free particle.
+ck_Status ck_truth_oscillator(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+
+// A prestretched rope pinned at both ends, thrown sideways; no field. Linear in the amplitude.
+ck_Status ck_truth_taut_string(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+double ck_truth_taut_string_off(const ck_Model *model);
+
+// A stiff rope hanging from its first particle, thrown sideways. Linear in the amplitude, for bars that do not stretch.
+ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *position, double *velocity,
+                                 ck_Error *error);
+double ck_truth_hanging_chain_off(const ck_Model *model);
+
+// A rigid bar from a pin, let go at rest at any angle.
+ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+// Turns the bar by so much towards its rest.
+void ck_truth_nudge_pendulum(ck_Model *model, double share);
+
+// Any body without pins and colliders whose springs start at rest, falling with drag.
+ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *position, double *velocity,
+                                  ck_Error *error);
+
+#endif

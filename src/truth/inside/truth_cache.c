@@ -1,0 +1,130 @@
+#include "truth_cache.h"
+
+#include "equilibrium.h"
+#include "hash.h"
+#include "paths.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// Changes whenever a truth of the same model would come out different, or the layout does.
+#define FORMAT "clothcheck truth 2\n\0\0\0\0"
+
+typedef struct Header {
+    char format[24];
+    uint64_t model, data; // hashes
+    int32_t path_count, particle_count, horizon, frame_counts[CK_TRUTH_MAX_PATHS], unused;
+} Header;
+
+uint64_t ck_truth_cache_hash(const ck_Model *model) {
+    size_t count = (size_t)model->particle_count;
+    uint64_t value = ck_hash(CK_HASH_START, model->truth, strlen(model->truth));
+    value = ck_hash(value, model->position, 3 * count * sizeof(double));
+    value = ck_hash(value, model->velocity, 3 * count * sizeof(double));
+    value = ck_hash(value, model->mass, count * sizeof(double));
+    value = ck_hash(value, model->pinned, count * sizeof(bool));
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        const double numbers[5] = {spring->a, spring->b, spring->rest, spring->stiffness, spring->damping};
+        value = ck_hash(value, numbers, sizeof numbers);
+    }
+    for (int i = 0; i < model->release_count; i++) {
+        const ck_Release *release = &model->releases[i];
+        value = ck_hash(value, &release->frame, sizeof release->frame);
+        value = ck_hash(value, release->particles, (size_t)release->particle_count * sizeof *release->particles);
+    }
+    const double numbers[] = {model->gravity[0], model->gravity[1], model->gravity[2], model->force[0], model->force[1],
+                              model->force[2],   model->drag,       model->duration,   model->step};
+    return ck_hash(value, numbers, sizeof numbers);
+}
+
+static size_t path_bytes(const ck_Model *model, int frames) {
+    return 6 * sizeof(double) * (size_t)model->particle_count * (size_t)frames;
+}
+
+static bool is_header_sound(const Header *header, const ck_Truth *truth, const ck_Model *model) {
+    bool sound = !memcmp(header->format, FORMAT, sizeof header->format) &&
+                 header->model == ck_truth_cache_hash(model) && header->particle_count == model->particle_count &&
+                 header->path_count >= 1 && header->path_count <= CK_TRUTH_MAX_PATHS;
+    int most = truth->form->is_static ? 1 : model->frame_count + 1;
+    for (int i = 0; sound && i < CK_TRUTH_MAX_PATHS; i++)
+        sound = i < header->path_count ? header->frame_counts[i] >= 1 && header->frame_counts[i] <= most
+                                       : !header->frame_counts[i];
+    return sound && !header->unused && header->horizon >= 0 &&
+           header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
+}
+
+// Reads the paths and holds them against the header's hash, and an equilibrium against its own forces.
+static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *model, FILE *file) {
+    uint64_t value = CK_HASH_START;
+    for (int i = 0; i < header->path_count; i++) {
+        ck_Trajectory *path = &loaded->paths[i];
+        ck_Model frames = *model;
+        frames.frame_count = header->frame_counts[i] - 1;
+        if (ck_trajectory_create(path, &frames, NULL)) return false;
+        loaded->path_count = i + 1;
+        if (fread(path->data, 1, path->bytes, file) != path->bytes) return false;
+        path->frame_count = header->frame_counts[i];
+        value = ck_hash(value, path->data, path->bytes);
+        if (i || !loaded->form->is_static) continue;
+        double residual = ck_equilibrium_residual(model, path->data);
+        if (!(residual >= 0 && residual <= CK_EQUILIBRIUM_RESIDUAL)) return false;
+    }
+    return value == header->data && fgetc(file) == EOF;
+}
+
+static void name_of(char *name, size_t size, const ck_Model *model) {
+    snprintf(name, size, "%016llx.truth", (unsigned long long)ck_truth_cache_hash(model));
+}
+
+bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *directory) {
+    char name[40];
+    name_of(name, sizeof name, model);
+    char *path = ck_path_join(directory, name);
+    FILE *file = path ? fopen(path, "rb") : NULL;
+    free(path);
+    if (!file) return false;
+    Header header;
+    ck_Truth loaded = {.form = truth->form};
+    bool sound = fread(&header, sizeof header, 1, file) == 1 && is_header_sound(&header, truth, model) &&
+                 read_paths(&loaded, &header, model, file);
+    fclose(file);
+    if (!sound) {
+        ck_truth_free(&loaded);
+        return false;
+    }
+    memcpy(truth->paths, loaded.paths, sizeof loaded.paths);
+    truth->path_count = loaded.path_count;
+    truth->reference.horizon = header.horizon;
+    return true;
+}
+
+ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, const char *directory) {
+    char name[40];
+    name_of(name, sizeof name, model);
+    char *path = ck_path_join(directory, name), *part = ck_path_part(directory, name);
+    FILE *file = path && part && !ck_path_make(directory) ? fopen(part, "wb") : NULL;
+    Header header = {.format = FORMAT,
+                     .model = ck_truth_cache_hash(model),
+                     .data = CK_HASH_START,
+                     .path_count = truth->path_count,
+                     .particle_count = model->particle_count,
+                     .horizon = truth->reference.horizon};
+    for (int i = 0; i < truth->path_count; i++) {
+        header.frame_counts[i] = truth->paths[i].frame_count;
+        header.data = ck_hash(header.data, truth->paths[i].data, path_bytes(model, truth->paths[i].frame_count));
+    }
+    bool written = file && fwrite(&header, sizeof header, 1, file) == 1;
+    for (int i = 0; i < truth->path_count && written; i++) {
+        size_t bytes = path_bytes(model, truth->paths[i].frame_count);
+        written = fwrite(truth->paths[i].data, 1, bytes, file) == bytes;
+    }
+    if (file) written &= !fclose(file);
+    if (written) written = !rename(part, path);
+    if (file && !written) unlink(part);
+    free(path);
+    free(part);
+    return written ? CK_OK : CK_IO;
+}

@@ -1,0 +1,258 @@
+// Studies through the program: killed and resumed, in parts and merged; and what they find where it is known.
+#include "fixture.h"
+#include "fixture_program.h"
+
+#include "random.h"
+#include "stability_study.h"
+#include "time_scale.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+// %s in arguments is the fixture_directory, up to five times.
+static void fill(char *filled, size_t size, const char *arguments) {
+    const char *at = fixture_directory;
+    snprintf(filled, size, arguments, at, at, at, at, at);
+}
+
+static pid_t start(const char *arguments) {
+    char filled[800];
+    fill(filled, sizeof filled, arguments);
+    return fixture_start(filled);
+}
+
+static void finish(const char *arguments, int wanted) {
+    char filled[800];
+    fill(filled, sizeof filled, arguments);
+    int status = fixture_program(filled);
+    if (status != wanted) fail_msg("%s: exit status %d, %s", filled, status, fixture_read("output"));
+}
+
+static char *read_text(const char *name) {
+    char *text = fixture_read(name);
+    if (!text) fail_msg("%s is not there", name);
+    return text;
+}
+
+static void assert_same(const char *one, const char *other) {
+    char *a = read_text(one), *b = read_text(other);
+    if (strcmp(a, b)) fail_msg("%s and %s differ", one, other);
+    assert_true(strlen(a) > 1000);
+    free(a);
+    free(b);
+}
+
+static long size_of(const char *name) {
+    char path[200];
+    struct stat about;
+    snprintf(path, sizeof path, "%s/%s", fixture_directory, name);
+    return stat(path, &about) ? -1 : (long)about.st_size;
+}
+
+#define STUDY "stability rope_hanging --engine native-verlet --engine native-xpbd --engine bullet-pbd --jobs 2 --out "
+
+// Killed twenty times at a random moment, nothing is lost or repeated: the journal only grows, the CSV is the same.
+static void test_kill(void **state) {
+    (void)state;
+    ck_Random random = ck_random_seed(11);
+    long size = 0;
+    finish(STUDY "%s/whole", 0);
+    for (int i = 0; i < 20; i++) {
+        pid_t child = start(STUDY "%s/killed");
+        usleep((useconds_t)(60000 * ck_random_unit(&random)));
+        kill(child, SIGKILL);
+        waitpid(child, NULL, 0);
+        long now = size_of("killed/stability.journal");
+        // a study that got to its end has taken its journal away
+        if (now < 0) break;
+        assert_true(now >= size - 400); // what a kill cut off is dropped: at most one row
+        size = now;
+    }
+    finish(STUDY "%s/killed", 0);
+    assert_same("whole/stability.csv", "killed/stability.csv");
+    assert_int_equal(size_of("killed/stability.journal"), -1);
+}
+
+static void test_shards(void **state) {
+    (void)state;
+    finish(STUDY "%s/1 --shard 1/4", 0);
+    finish(STUDY "%s/2 --shard 2/4", 0);
+    finish(STUDY "%s/3 --shard 3/4", 0);
+    finish(STUDY "%s/4 --shard 4/4", 0);
+    finish("merge %s/all %s/1 %s/2 %s/3 %s/4", 0);
+    assert_same("whole/stability.csv", "all/stability.csv");
+    assert_true(size_of("whole/machine.csv") > 0 && size_of("all/machine.csv") > 0);
+    // the scene's text counts, not its path
+    finish("stability scenes/../scenes/rope_hanging.yaml --engine native-verlet --engine native-xpbd --engine "
+           "bullet-pbd --jobs 2 --shard 4/4 --out %s/elsewhere",
+           0);
+    finish("merge %s/again %s/elsewhere %s/1 %s/2 %s/3", 0);
+    assert_same("whole/stability.csv", "again/stability.csv");
+    finish("stability rope_catenary --engine native-verlet --shard 1/2 --out %s/other", 0);
+    finish("merge %s/none %s/1 %s/other", 2);
+    finish("merge %s/none %s/empty", 2);
+    finish("merge %s/1 %s/1 %s/2", 2);
+    fixture_assert_output("is a part, too");
+    finish("stability rope_hanging --shard 5/4", 2);
+}
+
+// A directory is one study's at a time, and what is unfinished there is not thrown away for another.
+static void test_two_at_once(void **state) {
+    (void)state;
+    pid_t busy = start("stability rope_hanging --jobs 1 --out %s/busy");
+    usleep(500000);
+    finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);
+    kill(busy, SIGKILL);
+    waitpid(busy, NULL, 0);
+    long size = size_of("busy/stability.journal");
+    assert_true(size > 0);
+    finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);
+    assert_true(size_of("busy/stability.journal") == size);
+    finish("stability rope_hanging --jobs 2 --out %s/busy", 0);
+}
+
+// The growth of one damped mode over many steps of velocity Verlet with predicted velocity, or of symplectic Euler with
+// implicit damping; in units of its start.
+static double grow(ck_Method method, double frequency, double damping, double dt) {
+    double x = 1, v = 0, a = -frequency * frequency;
+    for (int i = 0; i < 40000 && fabs(x) < 1e6; i++) {
+        if (method == CK_METHOD_VELOCITY_VERLET) {
+            double predicted = v + dt * a, before = a;
+            x += dt * v + 0.5 * dt * dt * a;
+            a = -frequency * frequency * x - damping * predicted;
+            v += 0.5 * dt * (before + a);
+        } else {
+            v = (v - dt * frequency * frequency * x) / (1 + damping * dt);
+            x += dt * v;
+        }
+    }
+    return fabs(x);
+}
+
+// The limits of theory are where the method's own recurrence turns from bounded to growing.
+static void test_limits(void **state) {
+    (void)state;
+    static const ck_Method methods[] = {CK_METHOD_VELOCITY_VERLET, CK_METHOD_SYMPLECTIC_EULER};
+    for (int i = 0; i < 2; i++)
+        for (double damping = 0; damping < 300; damping = 3 * damping + 1) {
+            double limit = ck_stability_limit(methods[i], (ck_Vibration){50, damping}, (ck_Vibration){0, 0});
+            assert_true(grow(methods[i], 50, damping, 0.999 * limit) < 100);
+            assert_true(grow(methods[i], 50, damping, 1.001 * limit) > 1e5);
+        }
+    // damping along springs that would allow 6 s does not reach what swings across them: 2/20 s
+    double limit = ck_stability_limit(CK_METHOD_SYMPLECTIC_EULER, (ck_Vibration){27.9, 4800}, (ck_Vibration){20, 0});
+    assert_near("across springs", limit, 0.1, 1e-12);
+}
+
+// Fields of one CSV row whose first fields are these; fails where there is none.
+static void find_row(char *row, size_t size, const char *name, const char *start) {
+    char *text = read_text(name), *at = strstr(text, start);
+    if (!at) fail_msg("%s has no row %s", name, start);
+    snprintf(row, size, "%.*s", at ? (int)strcspn(at, "\n") : 0, at ? at : "");
+    free(text);
+}
+
+static double field_of(const char *row, int index) {
+    for (; index > 0; index--) row = strchr(row, ',') + 1;
+    return atof(row);
+}
+
+// Critical steps at those of theory: 2 % undamped, 5 % damped; ODE's, whose theory leaves damping out, 10 % with it.
+static void test_critical(void **state) {
+    (void)state;
+    static const struct {
+        const char *start;
+        double tolerance;
+    } rows[] = {
+        {"rope_hanging,native-verlet,critical,none,", 0.02},   {"rope_hanging,native-verlet,critical,scene,", 0.05},
+        {"rope_hanging,bullet-explicit,critical,none,", 0.05}, {"rope_hanging,bullet-explicit,critical,scene,", 0.05},
+        {"rope_hanging,ode-quick,critical,none,", 0.02},       {"rope_hanging,ode-quick,critical,scene,", 0.1}};
+    char row[1000];
+    finish(
+        "stability rope_hanging --engine native-verlet --engine bullet-explicit --engine ode-quick --out %s/critical",
+        0);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        find_row(row, sizeof row, "critical/stability.csv", rows[i].start);
+        assert_near(row, atof(strrchr(row, ',') + 1), 1, rows[i].tolerance);
+    }
+}
+
+// Second order, damping and all.
+static void test_precision(void **state) {
+    (void)state;
+    char row[1000];
+    finish("precision oscillator --engine native-verlet --repeats 0 --out %s/precision", 0);
+    find_row(row, sizeof row, "precision/precision_summary.csv", "oscillator,native-verlet,order");
+    assert_near(row, field_of(row, 4), 2, 0.2);
+    char *text = read_text("precision/precision.csv");
+    assert_non_null(strstr(text, ",1\n"));
+    free(text);
+}
+
+// A drag that does nothing is not needed, and it alone.
+static void test_needs(void **state) {
+    (void)state;
+    char path[200], arguments[400], row[1000];
+    snprintf(path, sizeof path, "%s/idle.yaml", fixture_directory);
+    FILE *file = fopen(path, "w");
+    fputs(
+        "name: idle\ncloth: {rows: 8, columns: 8, spacing: 0.1, mass: 0.2, down: [0, 0, 1]}\nsprings: {stiffness: 50, "
+        "shear: 20, damping: 0.5}\npins: [top_left, top_right]\ngravity: [0, -9.81, 0]\ndrag: 1.0e-7\ntime: "
+        "{duration: 1, step: 0.02}\n",
+        file);
+    fclose(file);
+    snprintf(arguments, sizeof arguments, "needs %s --out %%s/needs", path);
+    finish(arguments, 0);
+    char *text = read_text("needs/needs.csv"), *output = read_text("output");
+    for (char *at = text; (at = strstr(at, "\nidle,native-verlet,drag,")); at++)
+        if (strstr(at, ",yes,") && strstr(at, ",yes,") < strchr(at + 1, '\n')) fail_msg("drag is said to matter");
+    assert_non_null(strstr(output, "drag                     is not needed"));
+    assert_non_null(strstr(output, "shear                    is needed"));
+    assert_non_null(strstr(output, "spring damping           is needed"));
+    find_row(row, sizeof row, "needs/needs.csv", "idle,native-verlet,drag,sag");
+    free(text);
+    free(output);
+}
+
+// Half as many springs of a rope leave it as long and as heavy, as soft, and as stiff to bend; a sheet that has no half
+// of its own size is not tried.
+static void test_half(void **state) {
+    (void)state;
+    char row[1000];
+    finish("needs tests/cases/halved_rope.yaml --out %s/half", 0);
+    find_row(row, sizeof row, "half/needs.csv", "halved_rope,native-verlet,every second particle,sag");
+    assert_near("sag, of half", field_of(row, 6) - field_of(row, 5), 0.019, 5e-4);
+    finish("needs tests/cases/no_half.yaml --append --out %s/half", 0);
+    fixture_assert_output("every second particle    not tried: no coarser grid of square cells has its size");
+    find_row(row, sizeof row, "half/needs.csv", "no_half,native-verlet,every second particle,");
+    assert_non_null(strstr(row, ",refused,"));
+    assert_null(strstr(row, "inf"));
+}
+
+// A study's file is not written over by that of another scene, but by its own anew.
+static void test_keeping(void **state) {
+    (void)state;
+    char row[1000];
+    finish("needs oscillator --engine native-verlet --out %s/keep", 0);
+    finish("needs oscillator --engine native-verlet --out %s/keep", 0);
+    finish("needs pendulum --engine native-bars --out %s/keep", 2);
+    fixture_assert_output("keep/needs.csv: holds results of oscillator by native-verlet, which would be lost");
+    finish("needs pendulum --engine native-bars --out %s/keep --append", 0);
+    find_row(row, sizeof row, "keep/needs.csv", "oscillator,native-verlet,");
+    find_row(row, sizeof row, "keep/needs.csv", "pendulum,native-bars,");
+    finish("needs pendulum --engine native-bars --out %s/keep --force", 0);
+    char *text = read_text("keep/needs.csv");
+    assert_null(strstr(text, "oscillator"));
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),     cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical), cmocka_unit_test(test_needs),
+        cmocka_unit_test(test_half),        cmocka_unit_test(test_keeping),  cmocka_unit_test(test_precision),
+    };
+    return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
+}

@@ -1,0 +1,85 @@
+// The regression check: a fault of 1 % in an engine's stiffness is found and the engine named; a whole one passes.
+#include "fixture_comparison.h"
+
+#include "check.h"
+
+#include <unistd.h>
+
+// A baseline of one engine's rows, with bands, as --update writes it.
+static void make_baseline(ck_Baseline *baseline, const ck_CheckCase *one, const ck_JournalRow *row) {
+    char directory[] = "/tmp/clothcheck-check-XXXXXX", path[100];
+    ck_Csv csv;
+    assert_non_null(mkdtemp(directory));
+    assert_int_equal(ck_csv_open(&csv, directory, &ck_layouts[CK_BASELINE], NULL), CK_OK);
+    assert_true(ck_check_add(one, row, 1e9, &csv));
+    assert_int_equal(ck_csv_close(&csv, NULL), CK_OK);
+    snprintf(path, sizeof path, "%s/metrics.csv", directory);
+    assert_int_equal(ck_baseline_read(baseline, directory, NULL), CK_OK);
+    unlink(path);
+    rmdir(directory);
+}
+
+static void measure(ck_JournalRow *row, const ck_CheckCase *one, bool is_update) {
+    const ck_CompareOptions options = ck_compare_options_default();
+    ck_Check check = {.cases = (ck_CheckCase *)one, .case_count = 1, .options = &options, .is_update = is_update};
+    ck_Study study = ck_check_study(&check);
+    *row = (ck_JournalRow){.is_done = true};
+    for (int i = 0; i < CK_JOURNAL_VALUES; i++) row->values[i] = NAN;
+    assert_int_equal(study.run(study.context, 0, row, NULL), CK_OK);
+}
+
+static void check_engine(ck_Comparison *comparison, const ck_Engine *engine) {
+    const ck_CheckCase one = {comparison, engine};
+    ck_JournalRow row;
+    ck_Baseline baseline;
+    ck_Deviation deviations[100];
+    measure(&row, &one, true);
+    make_baseline(&baseline, &one, &row);
+    assert_true(baseline.count > 5 && baseline.count < 100);
+    measure(&row, &one, false);
+    if (ck_check_compare(&one, &row, &baseline, deviations))
+        fail_msg("%s: %s deviates from itself", engine->name, deviations[0].row->metric);
+    for (int i = 0; i < comparison->model.spring_count; i++) comparison->model.springs[i].stiffness *= 1.01;
+    measure(&row, &one, false);
+    for (int i = 0; i < comparison->model.spring_count; i++) comparison->model.springs[i].stiffness /= 1.01;
+    int found = ck_check_compare(&one, &row, &baseline, deviations);
+    if (!found) fail_msg("%s: 1 %% of stiffness is not found", engine->name);
+    assert_string_equal(deviations[0].row->engine, engine->name);
+    assert_true(deviations[0].excess > 100);
+    ck_baseline_free(&baseline);
+}
+
+static void test_fault(void **state) {
+    (void)state;
+    ck_Comparison comparison;
+    assert_int_equal(ck_comparison_load(&comparison, SCENE_DIRECTORY "/rope_hanging.yaml", NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+    for (int i = 0; i < ck_engine_count(); i++)
+        if (fixture_is_solver(ck_engine_at(i)) && ck_engine_at(i)->order > 0 &&
+            fixture_takes(ck_engine_at(i), &comparison.model))
+            check_engine(&comparison, ck_engine_at(i));
+    ck_comparison_free(&comparison);
+}
+
+// A baseline without rows would let everything pass.
+static void test_empty_baseline(void **state) {
+    (void)state;
+    char directory[] = "/tmp/clothcheck-check-XXXXXX", path[100];
+    ck_Csv csv;
+    ck_Baseline baseline;
+    ck_Error error = {0};
+    assert_non_null(mkdtemp(directory));
+    assert_int_equal(ck_csv_open(&csv, directory, &ck_layouts[CK_BASELINE], NULL), CK_OK);
+    assert_int_equal(ck_csv_close(&csv, NULL), CK_OK);
+    assert_int_equal(ck_baseline_read(&baseline, directory, &error), CK_BAD_INPUT);
+    assert_non_null(strstr(error.message, "holds no rows"));
+    ck_baseline_free(&baseline);
+    snprintf(path, sizeof path, "%s/metrics.csv", directory);
+    unlink(path);
+    rmdir(directory);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fault), cmocka_unit_test(test_empty_baseline)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,159 @@
+// What is read off paths whose answer is known: periods, energies, sags.
+#include "fixture_truth.h"
+
+#include "energy.h"
+#include "runge_kutta.h"
+
+static double metric_of(const TruthFixture *fixture, const ck_Trajectory *path, const char *name) {
+    const ck_Reference none = {0};
+    return ck_metric_value(ck_metric_find(name), &fixture->model, path, &none);
+}
+
+static void integrate(TruthFixture *fixture, ck_Trajectory *path, const char *text, int substeps) {
+    ck_Error error = {0};
+    fixture_load_truth(fixture, text);
+    if (ck_reference_integrate(path, &fixture->model, substeps, 0, 0, &error)) fail_msg("%s", error.message);
+}
+
+#define CLIMBER                                                                                                        \
+    "name: climber\nrope: {particles: 2, spacing: 20, mass: 2.0e-6, end_mass: 60, along: [0, -1, 0], origin: %s}\n"    \
+    "springs: {stiffness: 560.5714285714286, damping: %g}\npins: [first]\nvelocity: %s\ngravity: [0, -9.81, 0]\n"      \
+    "time: {duration: %g, step: 0.01}\n"
+
+// A weight on a spring swings in 2π√(m/k), with damping in 2π/√(k/m − (c/2m)²), wherever its rest is, however it
+// starts, wherever the origin is, and however long the path goes on once the swing has died.
+static void test_period(void **state) {
+    (void)state;
+    static const struct {
+        const char *origin, *velocity;
+        double damping, duration;
+    } cases[] = {
+        {"[0, 0, 0]", "[0, -0.5, 0]", 0, 5},   {"[0, 0, 0]", "[0, -0.5, 0]", 0, 20},
+        {"[0, 0, 0]", "[0, 0, 0]", 0, 10},     {"[1000, 1000, -500]", "[0, -0.5, 0]", 0, 10},
+        {"[0, 0, 0]", "[0, -0.5, 0]", 20, 10}, {"[0, 0, 0]", "[0, 0, 0]", 40, 120},
+        {"[3, 5, 7]", "[0, -2, 0]", 40, 120},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[600];
+        TruthFixture fixture;
+        ck_Trajectory path;
+        snprintf(text, sizeof text, CLIMBER, cases[i].origin, cases[i].damping, cases[i].velocity, cases[i].duration);
+        integrate(&fixture, &path, text, 16);
+        double k = fixture.model.springs[0].stiffness, m = fixture.model.mass[1], decay = cases[i].damping / m / 2;
+        double exact = 2 * 3.14159265358979323846 / sqrt(k / m - decay * decay);
+        double unsure = ck_metric_find("period")->unsure(&fixture.model, &path);
+        assert_near("period", metric_of(&fixture, &path, "period"), exact, 1e-9 * exact + unsure);
+        assert_near("what is unsure of it", unsure, 0, 1e-6 * exact);
+        ck_trajectory_free(&path);
+        fixture_free_truth(&fixture);
+    }
+}
+
+// A pendulum in a side wind swings about where both pull it: as one without wind under |g + F/m|, from that angle.
+static void test_period_in_wind(void **state) {
+    (void)state;
+    TruthFixture fixture;
+    ck_Trajectory path;
+    fixture_load_truth(
+        &fixture, "name: wind\nrope: {particles: 2, spacing: 1, mass: 2, along: [0, -1, 0]}\nsprings: {rigid: true}\n"
+                  "pins: [first]\ngravity: [0, -9.81, 0]\nforce: [4, 0, 0]\ntime: {duration: 12, step: 0.01}\n");
+    fixture_run(&path, &fixture.model, ck_engine_find("native-rope"), &(ck_Settings){.substeps = 100}, NULL);
+    double pull = hypot(9.81, 4), start = atan2(4, 9.81), a = 1, b = cos(0.5 * start);
+    for (int i = 0; i < 8; i++) {
+        double mean = 0.5 * (a + b);
+        b = sqrt(a * b);
+        a = mean;
+    }
+    // second order in ω·dt = 3e-4: off by (ω·dt)²/24
+    assert_near("period", metric_of(&fixture, &path, "period"), 2 * 3.14159265358979323846 / sqrt(pull) / a, 1e-6);
+    ck_trajectory_free(&path);
+    fixture_free_truth(&fixture);
+}
+
+// A bar that hangs still has no period, whatever rounding leaves of motion.
+static void test_no_period(void **state) {
+    (void)state;
+    TruthFixture fixture;
+    fixture_load_truth(&fixture, "name: still\nrope: {particles: 2, spacing: 1, mass: 1, along: [0, -1, 0]}\n"
+                                 "springs: {rigid: true}\npins: [first]\ngravity: [0, -9.81, 0]\n"
+                                 "time: {duration: 5, step: 0.016666666666666666}\ntruth: vertical_chain\n");
+    for (int i = 0; i < ck_engine_count(); i++) {
+        ck_Trajectory path;
+        if (!fixture_is_solver(ck_engine_at(i)) || !fixture_takes(ck_engine_at(i), &fixture.model)) continue;
+        fixture_run(&path, &fixture.model, ck_engine_at(i), NULL, NULL);
+        if (!isnan(metric_of(&fixture, &path, "period"))) fail_msg("%s has a period", ck_engine_at(i)->name);
+        // at an error of 1e-8 of its size it has gained no energy either
+        assert_near(ck_engine_at(i)->name, ck_energy_motion_gain(&fixture.model, &path), 0, 1e-3);
+        ck_trajectory_free(&path);
+    }
+    fixture_free_truth(&fixture);
+}
+
+// A pendulum that loses what it swings with has drifted as far as one that gains it; what drag takes is no drift.
+static void test_energy_drift(void **state) {
+    (void)state;
+    TruthFixture fixture;
+    ck_Trajectory path;
+    static const char swing[] =
+        "name: swing\nrope: {particles: 2, spacing: 0.8, mass: 2.0, along: [1, 0, 0]}\nsprings: {stiffness: 4000, "
+        "damping: %g}\npins: [first]\ngravity: [0, -9.81, 0]\ndrag: %g\ntime: {duration: 3, step: 0.001}\n";
+    for (int damped = 0; damped < 2; damped++) {
+        char text[400];
+        snprintf(text, sizeof text, swing, damped ? 2.0 : 0.0, damped ? 0.5 : 0.0);
+        integrate(&fixture, &path, text, 16);
+        // frames of 1 ms sum the damping to 1e-5 of it
+        assert_near("right", metric_of(&fixture, &path, "energy_drift"), 0, 1e-6);
+        // the same places passed at half the speed: three quarters of the kinetic energy are gone, which at the
+        // bottom is all that there was but for the spring's (3·m·g)²/2k, 1.4 % of m·g·L
+        for (int frame = 1; frame < path.frame_count; frame++)
+            for (int i = 0; i < 6; i++) ck_trajectory_velocity(&path, frame)[i] *= 0.5;
+        double lost = metric_of(&fixture, &path, "energy_drift");
+        if (!damped) assert_near("half the speed", lost, 0.75, 0.015);
+        if (damped && !(lost > 0.1)) fail_msg("losing half the speed scores %g", lost);
+        ck_trajectory_free(&path);
+        fixture_free_truth(&fixture);
+    }
+}
+
+// Only free particles sag: a rope whose lowest point is a pin sags by what hangs between.
+static void test_sag_of_free(void **state) {
+    (void)state;
+    TruthFixture fixture;
+    fixture_load_truth(&fixture,
+                       "name: slope\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, -1, 0], mass: 1}, {at: "
+                       "[2, -3, 0], mass: 1}], bars: [[0, 1], [1, 2]]}\nsprings: {stiffness: 100}\n"
+                       "pins: [first, last]\ngravity: [0, -10, 0]\ntime: {duration: 1, step: 0.1}\n");
+    ck_Trajectory path;
+    assert_int_equal(ck_trajectory_create(&path, &fixture.model, NULL), CK_OK);
+    memcpy(path.data, fixture.model.position, 9 * sizeof(double));
+    path.frame_count = 1;
+    assert_near("sag", metric_of(&fixture, &path, "sag"), 1 / fixture.model.size, 1e-12);
+    path.data[3 + 1] = -2.5;
+    assert_near("sag", metric_of(&fixture, &path, "sag"), 2.5 / fixture.model.size, 1e-12);
+    ck_trajectory_free(&path);
+    fixture_free_truth(&fixture);
+}
+
+// What a swinging body accelerates by is no jitter; the largest strain of a run is not the last one's.
+static void test_moving(void **state) {
+    (void)state;
+    TruthFixture fixture;
+    ck_Trajectory path;
+    char text[600];
+    snprintf(text, sizeof text, CLIMBER, "[0, 0, 0]", 0.0, "[0, 0, 0]", 6.0);
+    integrate(&fixture, &path, text, 16);
+    assert_true(isnan(metric_of(&fixture, &path, "jitter")));
+    // let go unstretched it bounces to twice the strain at rest
+    double rest = 60 * 9.81 / 560.5714285714286 / 20;
+    assert_near("peak", metric_of(&fixture, &path, "stretch_peak"), 2 * rest, 1e-4 * rest);
+    ck_trajectory_free(&path);
+    fixture_free_truth(&fixture);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_period),       cmocka_unit_test(test_period_in_wind), cmocka_unit_test(test_no_period),
+        cmocka_unit_test(test_energy_drift), cmocka_unit_test(test_sag_of_free),    cmocka_unit_test(test_moving),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
