@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *error) {
     *bytes = NULL;
@@ -25,4 +27,37 @@ ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *e
     if (!status) (*bytes)[*size] = 0;
     fclose(file);
     return status;
+}
+
+char *ck_path_join(const char *directory, const char *name) {
+    char *path;
+    return asprintf(&path, "%s/%s", directory, name) < 0 ? NULL : path;
+}
+
+char *ck_path_part(const char *directory, const char *name) {
+    char *path;
+    return asprintf(&path, "%s/%s.%d.part", directory, name, (int)getpid()) < 0 ? NULL : path;
+}
+
+bool ck_path_data(char *out, size_t size) {
+    char program[4096];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = 0;
+    for (int i = 0; i < 2 && strrchr(program, '/'); i++) *strrchr(program, '/') = 0;
+    snprintf(out, size, "%s/share/clothcheck", program);
+    if (!access(out, R_OK | X_OK)) return true;
+    snprintf(out, size, "%s", CK_SOURCE_DIRECTORY);
+    return !access(out, R_OK | X_OK);
+}
+
+int ck_path_make(const char *directory) {
+    char path[4096];
+    if (!*directory) return ENOENT;
+    if (snprintf(path, sizeof path, "%s", directory) >= (int)sizeof path) return ENAMETOOLONG;
+    for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        if (mkdir(path, 0777) && errno != EEXIST) return errno;
+        *slash = '/';
+    }
+    return mkdir(path, 0777) && errno != EEXIST ? errno : 0;
 }

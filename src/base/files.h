@@ -1,12 +1,41 @@
-// Whole files in memory.
+// Paths in the file system, and whole files.
 #ifndef CK_FILES_H
 #define CK_FILES_H
 
 #include "status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 // Reads a whole file, and a zero after it. Errors: CK_IO, CK_NO_MEMORY. Free *bytes in any case.
 ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *error);
+
+// Paths in the file system.
+
+// directory/name. NULL when out of memory. Free the result.
+char *ck_path_join(const char *directory, const char *name);
+
+// A name beside directory/name that no other process writes to: what a file is called until it is whole.
+// NULL when out of memory. Free the result.
+char *ck_path_part(const char *directory, const char *name);
+
+// Makes a directory and those above it. 0, or an errno.
+int ck_path_make(const char *directory);
+
+// The directory of what came with the program, which has scenes/ and reports/: share/clothcheck beside the bin/ that it
+// is installed in, else its source tree. False where there is none.
+bool ck_path_data(char *out, size_t size);
+
+// What tells two inputs apart.
+
+#define CK_HASH_START 0xcbf29ce484222325u
+
+// Source: Fowler, Noll, Vo, FNV-1a 64 bit.
+static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
+    const unsigned char *byte = data;
+    for (size_t i = 0; i < bytes; i++) start = (start ^ byte[i]) * 0x100000001b3u;
+    return start;
+}
 
 #endif

@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <time.h>
 
 typedef struct ck_Limits {
     double seconds;      // of wall time
@@ -41,5 +42,28 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *context), void
 // Zeroed memory that a child's writes are seen in. NULL when there is none. Free with ck_shared_free.
 void *ck_shared_allocate(size_t bytes);
 void ck_shared_free(void *memory, size_t bytes);
+
+// What everything is timed with.
+
+// CPU time of the calling thread, s.
+static inline double ck_thread_cpu(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+// CPU time of all threads of this process, s.
+static inline double ck_process_cpu(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+// Time on the wall, s, from an arbitrary start.
+static inline double ck_wall(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
 
 #endif

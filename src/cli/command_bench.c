@@ -1,7 +1,7 @@
 #include "bench.h"
 #include "command.h"
-#include "machine.h"
-#include "paths.h"
+#include "files.h"
+#include "tables.h"
 
 #include <stdio.h>
 #include <string.h>

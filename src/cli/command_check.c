@@ -1,6 +1,6 @@
 #include "check.h"
 #include "command.h"
-#include "paths.h"
+#include "files.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "command.h"
-#include "outlier.h"
+#include "comparison.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,6 @@
 #include "command.h"
 #include "names.h"
-#include "seed_cloth.h"
-#include "seed_tecido.h"
+#include "seed.h"
 
 #include <stdio.h>
 #include <string.h>

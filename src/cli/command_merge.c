@@ -1,6 +1,5 @@
 #include "command.h"
 #include "files.h"
-#include "hash.h"
 #include "study.h"
 
 #include <limits.h>

@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "files.h"
 #include "studies.h"
 #include "tune.h"
 

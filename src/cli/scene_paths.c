@@ -1,8 +1,8 @@
 // Where scenes are: in scenes/ of the folder that the user is in, and where the program keeps those that came with it.
 #include "command.h"
 
+#include "files.h"
 #include "names.h"
-#include "paths.h"
 
 #include <glob.h>
 #include <stdio.h>

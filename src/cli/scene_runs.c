@@ -1,6 +1,5 @@
 #include "command.h"
-#include "paths.h"
-#include "replay.h"
+#include "files.h"
 #include "tables.h"
 
 #include <math.h>

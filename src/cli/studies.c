@@ -1,8 +1,7 @@
 #include "studies.h"
 
-#include "hash.h"
-#include "machine.h"
-#include "paths.h"
+#include "files.h"
+#include "tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #define CK_STUDIES_H
 
 #include "command.h"
-#include "kept.h"
 #include "study.h"
+#include "tables.h"
 
 typedef struct ck_StudyCommand {
     const ck_Arguments *arguments;

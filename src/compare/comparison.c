@@ -2,7 +2,7 @@
 
 #include "names.h"
 #include "random.h"
-#include "verdict.h"
+#include "runner.h"
 
 #include <math.h>
 #include <stdio.h>

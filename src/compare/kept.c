@@ -1,7 +1,6 @@
-#include "kept.h"
+#include "tables.h"
 
 #include "csv_reader.h"
-#include "machine.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "machine.h"
+#include "tables.h"
 
 #include "engines.h"
 #include "loops.h"

@@ -1,4 +1,4 @@
-#include "outlier.h"
+#include "comparison.h"
 
 #include "statistics.h"
 

@@ -1,7 +1,6 @@
-#include "replay.h"
+#include "tables.h"
 
 #include "files.h"
-#include "paths.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,9 +1,7 @@
 #include "tables.h"
 
-#include "kept.h"
-#include "machine.h"
+#include "files.h"
 #include "metric.h"
-#include "paths.h"
 
 #include <math.h>
 #include <stdio.h>

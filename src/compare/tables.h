@@ -4,6 +4,7 @@
 
 #include "comparison.h"
 #include "csv_writer.h"
+#include "replay_file.h"
 
 typedef struct ck_Tables {
     ck_Csv csv[CK_COMPARISON_LAYOUTS];
@@ -30,5 +31,42 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
 ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error);
 
 void ck_tables_discard(ck_Tables *tables);
+
+// What a timing depends on beside the code: processor, compiler, versions, how libraries were built, date.
+
+// Tells one fact after the other, the date last.
+typedef void (*ck_MachineFact)(void *context, const char *key, const char *value);
+void ck_machine_tell(ck_MachineFact tell, void *context);
+
+// Adds rows of key and value.
+void ck_machine_write(ck_Csv *csv);
+
+// Writes machine.csv into a directory. Errors: CK_IO, CK_NO_MEMORY.
+ck_Status ck_machine_save(const char *directory, ck_Error *error);
+
+// Results that a directory holds already, of what is not run again.
+
+typedef struct ck_Kept {
+    const char *directory;
+    const ck_Comparison *comparisons; // that will be written into it
+    int count;
+    const ck_CompareOptions *options; // and of which engines
+    bool by_engine; // results of the engines of a scene stand for themselves: those of others may stay
+} ck_Kept;
+
+// Whether results in a layout's file, of scene and engine, would be lost: those of other scenes, unless they are kept,
+// and those of engines that are left out now. Kept ones must be of this machine and build. Errors: CK_BAD_INPUT, which
+// says what is there and what to give, CK_NO_MEMORY.
+ck_Status ck_kept_check(const ck_Kept *kept, const ck_Layout *layout, bool keeps_others, ck_Error *error);
+
+// Copies the rows that stay. Errors: CK_BAD_INPUT, CK_NO_MEMORY.
+ck_Status ck_kept_copy(const ck_Kept *kept, ck_Csv *csv, const ck_Layout *layout, ck_Error *error);
+
+// The paths of a comparison's runs and of its truth, thinned to what is worth looking at. One file a scene;
+// replay_file.h has its format.
+
+// Writes a finished comparison's replay below a directory: every k-th frame and the last, so that there are at most 61
+// and the file has some 4 MiB. Errors: CK_IO, CK_NO_MEMORY, and then there is none.
+ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, ck_Error *error);
 
 #endif

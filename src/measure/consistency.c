@@ -1,4 +1,4 @@
-#include "consistency.h"
+#include "trial.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 #include "metric.h"
 
 #include "contact_metric.h"
-#include "energy.h"
 #include "springs.h"
 #include "swing_metric.h"
 #include "vector.h"

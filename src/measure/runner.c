@@ -1,6 +1,6 @@
 #include "runner.h"
 
-#include "clock.h"
+#include "process.h"
 #include "statistics.h"
 
 #include <math.h>

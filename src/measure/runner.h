@@ -3,8 +3,9 @@
 #define CK_RUNNER_H
 
 #include "engine.h"
+#include "metric.h"
 #include "process.h"
-#include "run_status.h"
+#include "status.h"
 #include "trajectory.h"
 
 // The most timed repeats of one run.
@@ -47,5 +48,15 @@ void ck_run_free(ck_Run *run);
 // Median, interquartile range and simulated time of the repeats; all NaN without any.
 double ck_timing_median(const ck_Timing *timing);
 double ck_timing_iqr(const ck_Timing *timing);
+
+// Judges a run that reached its end: blow-ups stay finite in some engines, and are then seen by energy and strain.
+
+// Replaces an ok status by unsettled, overstretched or energy_gain where the path says so, and gives the reason.
+void ck_verdict(ck_Run *run, const ck_Reference *reference);
+
+// The measured pass and its verdict. An engine whose own rule chose a step that blows up steps finer, by halves, at
+// most three times, and the reason says so. Arguments and errors are those of ck_run_measure.
+ck_Status ck_verdict_run(ck_Run *run, const ck_Model *model, const ck_Reference *reference, const ck_Engine *engine,
+                         const ck_Settings *wanted, const ck_Limits *limits, ck_Error *error);
 
 #endif

@@ -1,6 +1,6 @@
 #include "trial.h"
 
-#include "verdict.h"
+#include "runner.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,5 @@
-#include "verdict.h"
+#include "runner.h"
 
-#include "energy.h"
 #include "engine.h"
 #include "springs.h"
 

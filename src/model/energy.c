@@ -1,6 +1,5 @@
-#include "energy.h"
-
 #include "springs.h"
+
 #include "vector.h"
 
 #include <string.h>

@@ -5,9 +5,9 @@
 #include "contact.h"
 #include "engine.h"
 #include "own_ledger.h"
-#include "waves.h"
 
 struct ck_ProjectedCloth;
+struct ck_Waves;
 
 typedef struct ck_Native {
     const ck_Model *model;
@@ -23,7 +23,7 @@ typedef struct ck_Native {
     double *multiplier;              // [springs] of the constraints, kg·m (force·dt²)
     double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
     ck_Contact *contact;             // NULL without colliders
-    ck_Waves *waves;                 // NULL: one thread
+    struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
 } ck_Native;
 

@@ -1,12 +1,11 @@
 #include "claims.h"
 
-#include "clock.h"
 #include "engines.h"
+#include "files.h"
 #include "model.h"
-#include "paths.h"
+#include "process.h"
 #include "scene.h"
-#include "seed_cloth.h"
-#include "seed_tecido.h"
+#include "seed.h"
 #include "vector.h"
 
 #include <math.h>

@@ -2,8 +2,7 @@
 #include "claims.h"
 #include "engines.h"
 #include "random.h"
-#include "seed_cloth.h"
-#include "seed_tecido.h"
+#include "seed.h"
 #include "vector.h"
 
 #include <math.h>

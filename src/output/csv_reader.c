@@ -1,8 +1,7 @@
 #include "csv_reader.h"
 
 #include "files.h"
-#include "paths.h"
-#include "run_status.h"
+#include "status.h"
 
 #include <csv.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "csv_writer.h"
 
-#include "paths.h"
+#include "files.h"
 
 #include <assert.h>
 #include <csv.h>

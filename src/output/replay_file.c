@@ -2,7 +2,6 @@
 
 #include "files.h"
 #include "names.h"
-#include "paths.h"
 
 #include <ctype.h>
 #include <errno.h>

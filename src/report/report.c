@@ -1,8 +1,8 @@
 #include "report.h"
 
 #include "chart.h"
+#include "files.h"
 #include "page.h"
-#include "paths.h"
 
 #include <dirent.h>
 #include <errno.h>

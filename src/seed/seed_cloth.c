@@ -1,5 +1,5 @@
 // Source: goguma1000, "Cloth-Simulation" (C++), rebuilt from its description, in metres.
-#include "seed_cloth.h"
+#include "seed.h"
 
 #include "collider.h"
 #include "engine.h"

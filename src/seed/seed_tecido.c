@@ -1,5 +1,5 @@
 // Source: N. Paes Leme, INF1608, "Tecido" (Unity, C#), rebuilt from its description.
-#include "seed_tecido.h"
+#include "seed.h"
 
 #include "engine.h"
 #include "own_ledger.h"

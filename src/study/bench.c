@@ -1,8 +1,8 @@
 #include "bench.h"
 
-#include "clock.h"
 #include "engines.h"
 #include "loops.h"
+#include "process.h"
 #include "scene.h"
 #include "springs.h"
 #include "statistics.h"

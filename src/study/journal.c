@@ -1,6 +1,6 @@
 #include "journal.h"
 
-#include "paths.h"
+#include "files.h"
 
 #include <csv.h>
 #include <errno.h>

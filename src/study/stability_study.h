@@ -4,7 +4,7 @@
 
 #include "comparison.h"
 #include "csv_writer.h"
-#include "stability_limit.h"
+#include "prediction.h"
 #include "study.h"
 
 typedef struct ck_StabilityCase {

@@ -1,7 +1,6 @@
 #include "study.h"
 
-#include "clock.h"
-#include "paths.h"
+#include "files.h"
 #include "process.h"
 
 #include <errno.h>

@@ -14,4 +14,17 @@
 ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine,
                                const ck_Settings *used, const ck_Truth *truth, ck_Error *error);
 
+// The longest stable step that theory gives a method about a rest.
+
+// A small motion about a rest.
+typedef struct ck_Vibration {
+    double frequency; // rad/s
+    double damping;   // 1/s, by springs and drag
+} ck_Vibration;
+
+// The longest stable step of a method about a rest, s; NaN: it has none, or none is known. It is the least that the
+// fastest motion and that across springs ask for: strong damping along springs, taken implicitly, lengthens the one and
+// does not reach the other.
+double ck_stability_limit(ck_Method method, ck_Vibration fastest, ck_Vibration across);
+
 #endif

@@ -1,4 +1,4 @@
-#include "stability_limit.h"
+#include "prediction.h"
 
 #include "time_scale.h"
 

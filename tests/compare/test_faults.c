@@ -1,8 +1,8 @@
 // Faults put into an engine on purpose: the comparison finds each of them, in the column where it must show.
 #include "fixture_comparison.h"
 
+#include "comparison.h"
 #include "engine.h"
-#include "outlier.h"
 #include "springs.h"
 #include "vector.h"
 

@@ -1,8 +1,8 @@
 // Hostile engines: each costs one row, and the comparison goes on.
 #include "fixture_comparison.h"
 
-#include "clock.h"
-#include "verdict.h"
+#include "process.h"
+#include "runner.h"
 
 #include <pthread.h>
 #include <signal.h>

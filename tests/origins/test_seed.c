@@ -2,8 +2,7 @@
 #include "fixture.h"
 
 #include "claims.h"
-#include "seed_cloth.h"
-#include "seed_tecido.h"
+#include "seed.h"
 #include "vector.h"
 
 #include <unistd.h>

@@ -4,7 +4,7 @@
 #include "fixture_program.h"
 
 #include "engine.h"
-#include "replay.h"
+#include "tables.h"
 
 #include <unistd.h>
 

@@ -1,8 +1,8 @@
 // Scenes on which something was once wrong, tests/cases, each with its right value.
 #include "fixture_comparison.h"
 
+#include "runner.h"
 #include "stability_study.h"
-#include "verdict.h"
 
 static void load(ck_Comparison *comparison, const char *name) {
     static char path[300];

@@ -1,10 +1,10 @@
 // One suite that every engine of the table passes. Tolerances come from theory: rounding, or a method's own prediction.
 #include "fixture_truth.h"
 
-#include "consistency.h"
 #include "prediction.h"
+#include "runner.h"
+#include "trial.h"
 #include "vector.h"
-#include "verdict.h"
 
 #include <glob.h>
 

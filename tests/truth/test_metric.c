@@ -1,8 +1,8 @@
 // What is read off paths whose answer is known: periods, energies, sags.
 #include "fixture_truth.h"
 
-#include "energy.h"
 #include "runge_kutta.h"
+#include "springs.h"
 
 static double metric_of(const TruthFixture *fixture, const ck_Trajectory *path, const char *name) {
     const ck_Reference none = {0};

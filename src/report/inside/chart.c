@@ -1,7 +1,6 @@
 #include "chart.h"
 
 #include "files.h"
-#include "paths.h"
 #include "process.h"
 
 #include <errno.h>

@@ -2,7 +2,6 @@
 
 #include "chart.h"
 #include "files.h"
-#include "paths.h"
 #include "process.h"
 #include "replay_pack.h"
 

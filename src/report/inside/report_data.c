@@ -1,7 +1,7 @@
 #include "report_data.h"
 
 #include "engines.h"
-#include "paths.h"
+#include "files.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,8 +1,7 @@
 #include "truth_cache.h"
 
 #include "equilibrium.h"
-#include "hash.h"
-#include "paths.h"
+#include "files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
