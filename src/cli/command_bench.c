@@ -1,6 +1,7 @@
 #include "bench.h"
 #include "command.h"
 #include "files.h"
+#include "progress.h"
 #include "tables.h"
 
 #include <stdio.h>
@@ -8,7 +9,7 @@
 #include <unistd.h>
 
 static void show_progress(const char *body, const char *engine) {
-    fprintf(stderr, "\r\033[K%s: %s", body, engine);
+    ck_progress_show("%s: %s", body, engine);
 }
 
 static int run(const ck_Command *command, int argc, char **argv) {
@@ -17,13 +18,13 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Csv csv = {0};
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     const char *out = arguments.out;
-    ck_BenchOptions options = {.rounds = arguments.rounds, .budget = 20, .largest = arguments.largest};
-    if (isatty(STDERR_FILENO)) options.progress = show_progress;
+    ck_BenchOptions options = {
+        .rounds = arguments.rounds, .budget = 20, .largest = arguments.largest, .progress = show_progress};
     int failed = status ? 0 : ck_path_make(out);
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", out, strerror(failed));
     if (!status) status = ck_csv_open(&csv, out, &ck_layouts[CK_BENCH], &error);
     if (!status) status = ck_bench_write(&csv, &options, &error);
-    if (options.progress) fprintf(stderr, "\r\033[K");
+    ck_progress_clear();
     if (!status) status = ck_csv_close(&csv, &error);
     if (!status) status = ck_machine_save(out, &error);
     ck_csv_discard(&csv);

@@ -1,6 +1,7 @@
 #include "claims.h"
 #include "command.h"
 #include "files.h"
+#include "progress.h"
 #include "tables.h"
 
 #include <stdio.h>
@@ -8,7 +9,7 @@
 #include <unistd.h>
 
 static void show_progress(const char *claim, double value) {
-    fprintf(stderr, "\r\033[K%s: %g", claim, value);
+    ck_progress_show("%s: %g", claim, value);
 }
 
 static ck_Status write_tables(const char *out, ck_Error *error) {
@@ -18,8 +19,8 @@ static ck_Status write_tables(const char *out, ck_Error *error) {
     if (!status) status = ck_csv_open(&quirks, out, &ck_layouts[CK_QUIRKS], error);
     if (!status) status = ck_csv_open(&claims, out, &ck_layouts[CK_CLAIMS], error);
     if (!status) status = ck_quirks_write(&quirks, "scenes", error);
-    if (!status) status = ck_claims_write(&claims, "scenes", isatty(STDERR_FILENO) ? show_progress : NULL, error);
-    if (isatty(STDERR_FILENO)) fprintf(stderr, "\r\033[K");
+    if (!status) status = ck_claims_write(&claims, "scenes", show_progress, error);
+    ck_progress_clear();
     if (!status) status = ck_csv_close(&quirks, error);
     if (!status) status = ck_csv_close(&claims, error);
     ck_csv_discard(&quirks);

@@ -8,7 +8,7 @@
 static const ck_Engine *choose_engine(const ck_StudyCommand *command) {
     const ck_CompareOptions *options = &command->arguments->options;
     for (int i = 0; i < options->engine_count; i++)
-        if (!(command->comparison->model.terms & ~options->engines[i]->terms)) return options->engines[i];
+        if (!ck_engine_lacks(options->engines[i], &command->comparison->model)) return options->engines[i];
     return options->engines[0];
 }
 

@@ -1,4 +1,5 @@
 #include "files.h"
+#include "progress.h"
 #include "studies.h"
 #include "tune.h"
 
@@ -9,7 +10,7 @@
 #include <unistd.h>
 
 static void show(int evaluation, double best) {
-    fprintf(stderr, "\r\033[Ktune: %d settings, least error so far %.3g", evaluation, best);
+    ck_progress_show("tune: %d settings, least error so far %.3g", evaluation, best);
 }
 
 static ck_Status read_varied(ck_TuneOptions *options, const ck_Arguments *arguments, ck_Error *error) {
@@ -40,7 +41,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
         .question = command->question,
         .given = ck_comparison_settings(arguments->engines[0], &command->comparison->scene, &arguments->options),
         .limits = arguments->options.limits,
-        .progress = isatty(STDERR_FILENO) ? show : NULL};
+        .progress = show};
     ck_Status vary = read_varied(&options, arguments, error);
     if (vary) return vary;
     char *cache = ck_path_join(arguments->out, "truths");
@@ -49,7 +50,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     ck_Csv csv = {0};
     ck_Status status = ck_study_command_open(command, &csv, CK_TUNE, error);
     if (!status) status = ck_tune_run(&tuning, command->comparison, &options, &csv, error);
-    if (options.progress) fprintf(stderr, "\r\033[K");
+    ck_progress_clear();
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) {
         ck_tune_print(&tuning, &options, &command->comparison->model);

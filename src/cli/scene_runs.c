@@ -1,5 +1,6 @@
 #include "command.h"
 #include "files.h"
+#include "progress.h"
 #include "tables.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ void ck_command_catch_signals(void) {
 }
 
 static void show_progress(const char *scene, const char *engine, const char *doing) {
-    fprintf(stderr, "\r\033[K%s %s on %s", doing, engine, scene);
+    ck_progress_show("%s %s on %s", doing, engine, scene);
 }
 
 // Two scenes of one name would be one in the CSVs.
@@ -41,15 +42,14 @@ static ck_Status check_names(const ck_Comparison *comparisons, int count, ck_Err
 static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *arguments, ck_Tables *tables,
                          void (*show)(const ck_Comparison *), ck_Error *error) {
     ck_CompareOptions options = arguments->options;
-    bool terminal = isatty(STDERR_FILENO);
     ck_command_catch_signals();
-    if (terminal) options.progress = show_progress;
+    options.progress = show_progress;
     char *cache = arguments->out ? ck_path_join(arguments->out, "truths") : NULL;
     options.cache = cache;
     ck_Status status = CK_OK;
     for (int i = 0; i < arguments->scene_count && !status; i++) {
         status = ck_comparison_run(&comparisons[i], &options, error);
-        if (terminal) fprintf(stderr, "\r\033[K");
+        ck_progress_clear();
         if (!status && arguments->out) ck_tables_add(tables, &comparisons[i], &options);
         if (!status && arguments->out) status = ck_replay_write(&comparisons[i], arguments->out, error);
         if (!status) show(&comparisons[i]);

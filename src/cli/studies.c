@@ -61,8 +61,8 @@ int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, 
 static ck_StudyOptions options_of(const ck_StudyCommand *command, int jobs) {
     const ck_Arguments *arguments = command->arguments;
     int wanted = arguments->jobs ? arguments->jobs : jobs ? jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
-    return (ck_StudyOptions){arguments->out,    command->question,     wanted > 0 ? wanted : 1, arguments->shard,
-                             arguments->shards, isatty(STDERR_FILENO), arguments->runs_nothing};
+    return (ck_StudyOptions){arguments->out,   command->question, wanted > 0 ? wanted : 1,
+                             arguments->shard, arguments->shards, arguments->runs_nothing};
 }
 
 ck_Status ck_study_command_run(const ck_StudyCommand *command, const ck_Study *study, int jobs, ck_JournalRow **rows,

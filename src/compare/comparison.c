@@ -141,7 +141,7 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
 }
 
 bool ck_comparison_has_path(const ck_Comparison *comparison, int run) {
-    return comparison->runs[run].trajectory.frame_count == comparison->model.frame_count + 1;
+    return ck_run_has_all_frames(&comparison->runs[run]);
 }
 
 void ck_comparison_free_runs(ck_Comparison *comparison) {

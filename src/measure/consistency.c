@@ -82,7 +82,7 @@ ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double bu
                                  ck_Error *error) {
     for (int i = 0; i < CK_CONSISTENCY_STEPS; i++) deviation[i] = NAN;
     double frames = PIECES * (FINER * (PIECE_FRAMES + APART) + PIECE_FRAMES * 2);
-    bool complete = run->trajectory.frame_count == run->model->frame_count + 1;
+    bool complete = ck_run_has_all_frames(run);
     // a restart knows nothing of pins let go before it
     if (!complete || run->model->release_count || run->measured_cpu / run->model->frame_count * frames > budget)
         return CK_OK;

@@ -178,6 +178,10 @@ ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Er
     return status;
 }
 
+bool ck_run_has_all_frames(const ck_Run *run) {
+    return run->model && run->trajectory.frame_count == run->model->frame_count + 1;
+}
+
 void ck_run_free(ck_Run *run) {
     ck_trajectory_free(&run->trajectory);
     *run = (ck_Run){0};

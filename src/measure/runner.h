@@ -32,6 +32,9 @@ typedef struct ck_Run {
     size_t peak_rss_bytes;
 } ck_Run;
 
+// True where the run wrote all its frames, so that it can be measured.
+bool ck_run_has_all_frames(const ck_Run *run);
+
 // The measured pass: fills trajectory, ledger, settings, status and reason.
 // Errors: CK_NO_MEMORY, CK_IO. How the engine fared is in run->status. Free with ck_run_free in any case.
 ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted,

@@ -25,7 +25,7 @@ ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Referenc
     *trial = (ck_Trial){.error = NAN, .sag_error = NAN, .stretch_error = NAN, .cpu = NAN, .cpu_range = NAN};
     ck_Run run = {0};
     ck_Status status = ck_verdict_run(&run, model, truth, engine, wanted, limits, error);
-    bool has_path = !status && run.trajectory.frame_count == model->frame_count + 1;
+    bool has_path = !status && ck_run_has_all_frames(&run);
     if (has_path) {
         measure(trial, &run, truth, against);
         trial->cpu = run.measured_cpu;
@@ -50,7 +50,7 @@ ck_Status ck_measurement_take(ck_Measurement *measurement, const ck_Model *model
     *measurement = (ck_Measurement){.cpu = NAN, .time_step = NAN};
     for (int i = 0; i < CK_METRIC_CAPACITY; i++) measurement->values[i] = NAN;
     ck_Status status = ck_verdict_run(run, model, reference, engine, wanted, limits, error);
-    if (!status && run->trajectory.frame_count == model->frame_count + 1) {
+    if (!status && ck_run_has_all_frames(run)) {
         for (int i = 0; i < ck_metric_count(); i++)
             if (ck_metric_is_wanted(ck_metric_at(i), model))
                 measurement->values[i] = ck_metric_value(ck_metric_at(i), model, &run->trajectory, reference);

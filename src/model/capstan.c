@@ -1,6 +1,5 @@
-#include "capstan.h"
-
 #include "shape.h"
+
 #include "vector.h"
 
 #include <math.h>

@@ -135,7 +135,7 @@ static void create(Entrant *entrant, const ck_Model *model, ck_Settings wanted) 
         ck_settings_set(&wanted, ck_setting_find(entrant->engine->settings, candidate->own)->slot, candidate->value);
     ck_Settings used;
     ck_Error why = {0};
-    if (model->terms & ~entrant->engine->terms)
+    if (ck_engine_lacks(entrant->engine, model))
         snprintf(entrant->reason, sizeof entrant->reason, "does not model it");
     else if (entrant->engine->create(&entrant->state, model, &wanted, &used, NULL, &why))
         snprintf(entrant->reason, sizeof entrant->reason, "%.199s", why.message);

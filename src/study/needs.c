@@ -214,7 +214,7 @@ ck_Status ck_needs_create(ck_Needs *needs, const ck_Comparison *comparison, cons
     const ck_Reference none = {.is_static = comparison->truth.reference.is_static};
     ck_Status status =
         ck_measurement_take(&needs->whole, &comparison->model, &none, engine, &wanted, limits, &needs->base, error);
-    if (!status && needs->base.trajectory.frame_count != comparison->model.frame_count + 1)
+    if (!status && !ck_run_has_all_frames(&needs->base))
         status = ck_fail(error, CK_REFUSED, "%s: %s does not get through the whole scene: %s", comparison->path,
                          engine->name, needs->whole.reason);
     if (!status) list_cases(needs);

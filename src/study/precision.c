@@ -18,16 +18,6 @@
 
 enum { DT, SUBSTEPS, ITERATIONS, ERROR, SAG_ERROR, STRETCH_ERROR, CPU, CPU_RANGE };
 
-// What the engine's own rule sets; false where it does not take the scene.
-static bool find_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
-                           ck_Settings *used) {
-    void *state;
-    if (model->terms & ~engine->terms) return false;
-    if (engine->create(&state, model, wanted, used, NULL, NULL)) return false;
-    engine->destroy(state);
-    return true;
-}
-
 static void add_case(ck_Precision *precision, const ck_Engine *engine, ck_Settings settings, bool is_ladder) {
     for (int i = 0; i < precision->case_count; i++) {
         const ck_PrecisionCase *other = &precision->cases[i];
@@ -46,7 +36,7 @@ static uint32_t scaled(uint32_t count, double factor) {
 static void add_engine(ck_Precision *precision, const ck_Engine *engine, const ck_CompareOptions *options) {
     const ck_Model *model = &precision->comparison->model;
     ck_Settings wanted = ck_comparison_settings(engine, &precision->comparison->scene, options), used;
-    if (!find_automatic(engine, model, &wanted, &used)) {
+    if (ck_engine_automatic(engine, model, &wanted, &used, NULL)) {
         add_case(precision, engine, wanted, false); // its row says why
         return;
     }

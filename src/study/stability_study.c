@@ -136,10 +136,7 @@ static ck_Status find_rest(ck_StabilityRest *rest, const ck_StabilityMap *map, d
 // True where the method has iterations to set; false, too, where the engine does not take the scene.
 static bool iterates(const ck_Engine *engine, const ck_Model *model) {
     ck_Settings used, wanted = {.substeps = 1};
-    void *state;
-    if ((model->terms & ~engine->terms) || engine->create(&state, model, &wanted, &used, NULL, NULL)) return false;
-    engine->destroy(state);
-    return used.iterations > 0;
+    return !ck_engine_automatic(engine, model, &wanted, &used, NULL) && used.iterations > 0;
 }
 
 static void add_engine(ck_StabilityMap *map, const ck_Engine *engine) {

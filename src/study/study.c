@@ -2,6 +2,7 @@
 
 #include "files.h"
 #include "process.h"
+#include "progress.h"
 
 #include <errno.h>
 #include <math.h>
@@ -79,8 +80,9 @@ static _Noreturn void work(const Job *job) {
 static void show(const Job *job, int wanted, double start) {
     int done = atomic_load(&job->board->done);
     double spent = ck_wall() - start;
-    fprintf(stderr, "\r\033[K%s: %d of %d cases", job->study->name, done, wanted);
-    if (done > 0) fprintf(stderr, ", about %.0f s more", spent / done * (wanted - done));
+    char left[40] = "";
+    if (done > 0) snprintf(left, sizeof left, ", about %.0f s more", spent / done * (wanted - done));
+    ck_progress_show("%s: %d of %d cases%s", job->study->name, done, wanted, left);
 }
 
 // Waits for all workers; ends them when a signal has come.
@@ -93,7 +95,7 @@ static ck_Status wait_for_workers(const Job *job, pid_t *workers, int count, int
         if (ended <= 0) {
             struct timespec pause = {.tv_nsec = 20000000};
             nanosleep(&pause, NULL);
-            if (job->options->shows_progress) show(job, wanted, start);
+            show(job, wanted, start);
             for (int i = 0; i < count && ck_child_interrupted; i++)
                 if (workers[i] > 0) kill(workers[i], SIGKILL);
             continue;
@@ -105,7 +107,7 @@ static ck_Status wait_for_workers(const Job *job, pid_t *workers, int count, int
             status =
                 ck_fail(error, CK_IO, "%s: a worker ended before its case; what is done is kept", job->study->name);
     }
-    if (job->options->shows_progress) fprintf(stderr, "\r\033[K");
+    ck_progress_clear();
     if (ck_child_interrupted) return ck_fail(error, CK_IO, "interrupted; the same command goes on where it was");
     return status;
 }

@@ -19,7 +19,6 @@ typedef struct ck_StudyOptions {
     const char *question;  // what was asked, the same for every part of it
     int jobs;              // worker processes
     int shard, shards;     // only every shards-th case, from the shard-th, counted from 1
-    bool shows_progress;   // on stderr
     bool runs_nothing;     // every case must be in the journal, or it is an error
 } ck_StudyOptions;
 

@@ -314,7 +314,7 @@ static ck_Status validate(const Search *search, const ck_Tuning *tuning, const c
     if (!status) status = ck_truth_create(&other.truth, &other.model, options->cache, error);
     if (!status && options->like)
         status = ck_run_measure(&like, &other.model, options->like, &(ck_Settings){0}, &options->limits, error);
-    if (!status && options->like && like.trajectory.frame_count != other.model.frame_count + 1)
+    if (!status && options->like && !ck_run_has_all_frames(&like))
         status = ck_fail(error, CK_REFUSED, "%s: %s has no path to come close to: %s", path, options->like->name,
                          like.reason);
     if (!status) {
@@ -341,19 +341,15 @@ static ck_Status prepare(Search *search, ck_Error *error) {
     const ck_TuneOptions *options = search->options;
     const ck_Model *model = &search->comparison->model;
     const ck_Reference *reference = &search->comparison->truth.reference;
-    void *state;
     if (!options->like && (!reference->trajectory.frame_count || reference->is_invariant))
         return ck_fail(error, CK_BAD_INPUT, "%s: its truth has no positions to come close to; give --like ENGINE",
                        search->comparison->path);
-    if (model->terms & ~options->engine->terms)
-        return ck_fail(error, CK_REFUSED, "%s does not model all that %s has", options->engine->name, model->name);
-    ck_Status status = options->engine->create(&state, model, &options->given, &search->automatic, NULL, error);
+    ck_Status status = ck_engine_automatic(options->engine, model, &options->given, &search->automatic, error);
     if (status) return status;
-    options->engine->destroy(state);
     find_ranges(search);
     if (!options->like) return CK_OK;
     status = ck_run_measure(&search->like, model, options->like, &(ck_Settings){0}, &options->limits, error);
-    if (!status && search->like.trajectory.frame_count != model->frame_count + 1)
+    if (!status && !ck_run_has_all_frames(&search->like))
         status =
             ck_fail(error, CK_REFUSED, "%s has no path to come close to: %s", options->like->name, search->like.reason);
     return status;

@@ -1,6 +1,5 @@
 #include "contact_metric.h"
 
-#include "capstan.h"
 #include "collider.h"
 #include "shape.h"
 #include "vector.h"

@@ -1,6 +1,5 @@
 #include "capstan_path.h"
 
-#include "capstan.h"
 #include "process.h"
 #include "random.h"
 #include "rest_forms.h"
