@@ -89,6 +89,9 @@ void ck_arguments_free(ck_Arguments *arguments);
 // Print the manual page, and the completion of bash.
 void ck_manual_print(const ck_Command *const *commands, int count);
 void ck_completion_print(const ck_Command *const *commands, int count);
+// Print the tables that README.md and reports/README.md hold.
+void ck_commands_print(const ck_Command *const *commands, int count);
+void ck_columns_print(void);
 
 // Prints what the options are, for --help.
 void ck_arguments_help(const ck_Command *command);

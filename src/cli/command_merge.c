@@ -1,6 +1,8 @@
 #include "command.h"
 #include "files.h"
-#include "study.h"
+#include "needs.h"
+#include "precision.h"
+#include "stability_study.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -9,7 +11,14 @@
 
 #define MAX_WORDS 128
 
-static const ck_Command *const studies[] = {&ck_command_precision, &ck_command_stability, &ck_command_needs};
+typedef struct Kind {
+    const ck_Command *command;
+    ck_ValueName name_at; // of the values of its journal
+} Kind;
+
+static const Kind studies[] = {{&ck_command_precision, ck_precision_value},
+                               {&ck_command_stability, ck_stability_value},
+                               {&ck_command_needs, ck_needs_value}};
 #define STUDIES (sizeof studies / sizeof *studies)
 
 // Runs the parts' own command: all its cases are there, so that it only writes what one run would have written.
@@ -28,11 +37,11 @@ static int run_question(const ck_Command *study, char *question, const char *sce
 }
 
 // The study whose journal a directory holds; NULL where there is none.
-static const ck_Command *find_study(const char *directory, char *question, size_t size) {
+static const Kind *find_study(const char *directory, char *question, size_t size) {
     char name[64];
     for (size_t i = 0; i < STUDIES; i++) {
-        snprintf(name, sizeof name, "%s.journal", studies[i]->name);
-        if (!ck_journal_question(directory, name, question, size, NULL)) return studies[i];
+        snprintf(name, sizeof name, "%s.journal", studies[i].command->name);
+        if (!ck_journal_question(directory, name, question, size, NULL)) return &studies[i];
     }
     return NULL;
 }
@@ -83,7 +92,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Arguments arguments;
     ck_Error error = {0};
     char question[4096];
-    const ck_Command *study = NULL;
+    const Kind *study = NULL;
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     char **parts = arguments.words + 1;
     int count = arguments.word_count - 1;
@@ -92,13 +101,15 @@ static int run(const ck_Command *command, int argc, char **argv) {
         study = find_study(parts[0], question, sizeof question);
         if (!study) status = ck_fail(&error, CK_BAD_INPUT, "%s: holds no part of a study (NAME.journal)", parts[0]);
     }
-    if (!status) status = ck_study_merge(arguments.words[0], study->name, (const char *const *)parts, count, &error);
-    if (!status) status = find_scene(study, parts, count, question, sizeof question, &error);
+    if (!status)
+        status = ck_study_merge(arguments.words[0], study->command->name, study->name_at, (const char *const *)parts,
+                                count, &error);
+    if (!status) status = find_scene(study->command, parts, count, question, sizeof question, &error);
     char *out = arguments.word_count ? arguments.words[0] : NULL;
     ck_arguments_free(&arguments);
     if (status) return ck_command_fail(status, &error);
     char *place = strstr(question, CK_JOURNAL_PLACE);
-    return run_question(study, question, place + strlen(CK_JOURNAL_PLACE), out);
+    return run_question(study->command, question, place + strlen(CK_JOURNAL_PLACE), out);
 }
 
 const ck_Command ck_command_merge = {

@@ -65,6 +65,21 @@ static void open_streams(void) {
     if (file >= 0) close(file);
 }
 
+// What is made of the tables, for the manual and the READMEs. False where there is no such text.
+static bool print_text(const char *name) {
+    if (!strcmp(name, "--manual"))
+        ck_manual_print(commands, COMMANDS);
+    else if (!strcmp(name, "--completion"))
+        ck_completion_print(commands, COMMANDS);
+    else if (!strcmp(name, "--commands"))
+        ck_commands_print(commands, COMMANDS);
+    else if (!strcmp(name, "--columns"))
+        ck_columns_print();
+    else
+        return false;
+    return true;
+}
+
 static int run(int argc, char **argv) {
     const char *name = argc > 1 ? argv[1] : "";
     bool is_help = !strcmp(name, "help");
@@ -76,10 +91,7 @@ static int run(int argc, char **argv) {
         print_help(stdout);
         return CK_EXIT_OK;
     }
-    if (is_help && (!strcmp(argv[2], "--manual") || !strcmp(argv[2], "--completion"))) {
-        (strcmp(argv[2], "--manual") ? ck_completion_print : ck_manual_print)(commands, COMMANDS);
-        return CK_EXIT_OK;
-    }
+    if (is_help && print_text(argv[2])) return CK_EXIT_OK;
     if (!*name) {
         print_help(stderr);
         return CK_EXIT_USAGE;

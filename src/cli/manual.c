@@ -1,5 +1,6 @@
 // The manual page and the shell's completion, made from the tables of commands and options.
 #include "command.h"
+#include "layout.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -67,4 +68,21 @@ void ck_completion_print(const ck_Command *const *commands, int count) {
     }
     printf("\t\tesac\n\tfi\n\tCOMPREPLY=($(compgen -W \"$words\" -- \"$word\") $(compgen -f -- \"$word\"))\n}\n"
            "complete -o filenames -F _clothcheck clothcheck\n");
+}
+
+void ck_columns_print(void) {
+    printf("| file | what it holds | columns |\n|---|---|---|\n");
+    for (int i = 0; i < CK_LAYOUT_COUNT; i++) {
+        printf("| `%s` | %s | ", ck_layouts[i].file, ck_layouts[i].about);
+        for (int k = 0; ck_layouts[i].columns[k].name; k++)
+            printf("%s%s", k ? ", " : "", ck_layouts[i].columns[k].name);
+        printf(" |\n");
+    }
+}
+
+void ck_commands_print(const ck_Command *const *commands, int count) {
+    printf("| command | what it does |\n|---|---|\n");
+    for (int i = 0; i < count; i++)
+        printf("| `clothcheck %s%s%s` | %s |\n", commands[i]->name, *commands[i]->arguments ? " " : "",
+               commands[i]->arguments, commands[i]->about);
 }

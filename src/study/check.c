@@ -14,8 +14,27 @@
 #define NUDGES 3
 
 // Where a study's row holds what.
-enum { CPU, VALUES, BANDS = VALUES + CK_METRIC_CAPACITY };
-_Static_assert(BANDS + CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOURNAL_VALUES");
+// After the cost a value and a band of each metric.
+enum { CPU, VALUES };
+
+static int value_at(int metric) {
+    return VALUES + 2 * metric;
+}
+
+static int band_at(int metric) {
+    return VALUES + 2 * metric + 1;
+}
+
+static bool value_name(int index, char *name, size_t size) {
+    int metric = (index - VALUES) / 2;
+    if (index >= value_at(ck_metric_count())) return false;
+    if (index == CPU)
+        snprintf(name, size, "cpu_s");
+    else
+        snprintf(name, size, "%s%s", ck_metric_at(metric)->name, index == band_at(metric) ? " band" : "");
+    return true;
+}
+_Static_assert(VALUES + 2 * CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOURNAL_VALUES");
 
 ck_Status ck_baseline_read(ck_Baseline *baseline, const char *directory, ck_Error *error) {
     *baseline = (ck_Baseline){0};
@@ -99,12 +118,12 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     row->status = (int)now.status;
     snprintf(row->reason, sizeof row->reason, "%s", now.reason);
     row->values[CPU] = now.cpu;
-    for (int i = 0; i < ck_metric_count(); i++) row->values[VALUES + i] = now.values[i];
+    for (int i = 0; i < ck_metric_count(); i++) row->values[value_at(i)] = now.values[i];
     if (!check->is_update || isnan(now.cpu)) return CK_OK;
     for (int nudge = 0; nudge < NUDGES && !status; nudge++) {
         status = measure_nudged(check, one, 3 + (uint64_t)nudge, &nudged, error);
         for (int i = 0; i < ck_metric_count() && !status; i++) {
-            double *widest = &row->values[BANDS + i], band = ck_check_band(now.values[i], nudged.values[i]);
+            double *widest = &row->values[band_at(i)], band = ck_check_band(now.values[i], nudged.values[i]);
             if (nudge == 0 || isnan(band) || band > *widest) *widest = band;
         }
     }
@@ -112,7 +131,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
 }
 
 ck_Study ck_check_study(const ck_Check *check) {
-    return (ck_Study){"check", check->case_count, (void *)check, describe, run};
+    return (ck_Study){"check", value_name, check->case_count, (void *)check, describe, run};
 }
 
 static int compare_deviations(const void *a, const void *b) {
@@ -129,7 +148,7 @@ int ck_check_compare(const ck_CheckCase *one, const ck_JournalRow *row, const ck
         if (strcmp(was->scene, one->comparison->model.name) || strcmp(was->engine, one->engine->name)) continue;
         double value = NAN, excess = 0;
         for (int k = 0; k < ck_metric_count(); k++)
-            if (!strcmp(ck_metric_at(k)->name, was->metric)) value = row->values[VALUES + k];
+            if (!strcmp(ck_metric_at(k)->name, was->metric)) value = row->values[value_at(k)];
         if (strcmp(was->status, status) || isnan(value) != isnan(was->value))
             excess = INFINITY;
         else if (!isnan(value))
@@ -146,10 +165,10 @@ bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seco
     for (int i = 0; i <= ck_metric_count(); i++) {
         // a run that measures nothing has one row, for its status
         bool is_bare = i == ck_metric_count();
-        if (is_bare ? has_any : isnan(row->values[VALUES + i]) || isnan(row->values[BANDS + i])) continue;
+        if (is_bare ? has_any : isnan(row->values[value_at(i)]) || isnan(row->values[band_at(i)])) continue;
         has_any = true;
-        ck_BaselineRow made = {.value = is_bare ? NAN : row->values[VALUES + i],
-                               .band = is_bare ? NAN : row->values[BANDS + i]};
+        ck_BaselineRow made = {.value = is_bare ? NAN : row->values[value_at(i)],
+                               .band = is_bare ? NAN : row->values[band_at(i)]};
         snprintf(made.scene, sizeof made.scene, "%s", one->comparison->model.name);
         snprintf(made.engine, sizeof made.engine, "%s", one->engine->name);
         snprintf(made.status, sizeof made.status, "%s", ck_run_status_names[row->status]);

@@ -20,11 +20,29 @@ typedef struct Reader {
     char question[MAX_ROW]; // the first row's only field
     char key[MAX_ROW];
     ck_JournalRow row;
+    ck_ValueName name_at;
+    int columns[3 + CK_JOURNAL_VALUES]; // of the file: where in values each goes, −1: nowhere
     int row_index, field;
     const char *wanted; // the question; rows of another one are not kept
     void (*kept)(void *context, const char *key, const ck_JournalRow *row);
     void *context;
 } Reader;
+
+#define MAX_NAME 64
+
+static int count_values(ck_ValueName name_at) {
+    char name[MAX_NAME];
+    int count = 0;
+    while (name_at && name_at(count, name, sizeof name)) count++;
+    return count;
+}
+
+static int find_value(ck_ValueName name_at, const char *wanted, size_t length) {
+    char name[MAX_NAME];
+    for (int i = 0; name_at && name_at(i, name, sizeof name); i++)
+        if (strlen(name) == length && !memcmp(name, wanted, length)) return i;
+    return -1;
+}
 
 static void take_field(void *text, size_t length, void *context) {
     Reader *reader = context;
@@ -34,13 +52,17 @@ static void take_field(void *text, size_t length, void *context) {
         if (field == 0) snprintf(reader->question, sizeof reader->question, "%.*s", (int)length, (char *)text);
         return;
     }
+    if (reader->row_index == 1) {
+        if (field < 3 + CK_JOURNAL_VALUES) reader->columns[field] = find_value(reader->name_at, text, length);
+        return;
+    }
     if (field == 0) snprintf(reader->key, sizeof reader->key, "%.*s", (int)length, (char *)text);
     if (field == 2) snprintf(reader->row.reason, sizeof reader->row.reason, "%.*s", (int)length, (char *)text);
     if (field == 0 || field == 2) return;
     snprintf(number, sizeof number, "%.*s", (int)length, (char *)text);
     if (field == 1) reader->row.status = atoi(number);
-    if (field >= 3 && field < 3 + CK_JOURNAL_VALUES)
-        reader->row.values[field - 3] = length ? strtod(number, NULL) : NAN;
+    if (field >= 3 && field < 3 + CK_JOURNAL_VALUES && reader->columns[field] >= 0)
+        reader->row.values[reader->columns[field]] = length ? strtod(number, NULL) : NAN;
 }
 
 static size_t counting_length(const char *question) {
@@ -56,10 +78,10 @@ bool ck_journal_is_same(const char *question, const char *other) {
 static void end_row(int end, void *context) {
     (void)end;
     Reader *reader = context;
-    bool is_whole = reader->field == 3 + CK_JOURNAL_VALUES,
+    bool is_whole = reader->field == 3 + count_values(reader->name_at),
          is_asked = ck_journal_is_same(reader->question, reader->wanted);
     reader->row.is_done = true;
-    if (reader->row_index > 0 && is_whole && is_asked && reader->kept)
+    if (reader->row_index > 1 && is_whole && is_asked && reader->kept)
         reader->kept(reader->context, reader->key, &reader->row);
     reader->row_index++;
     reader->field = 0;
@@ -98,9 +120,12 @@ static size_t quote(char *out, size_t size, const char *text) {
 }
 
 static ck_Status ask(const ck_Journal *journal, const char *question, ck_Error *error) {
-    char text[2 * MAX_ROW];
+    char text[2 * MAX_ROW], name[MAX_NAME];
     if (ftruncate(journal->file, 0)) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
-    size_t length = quote(text, sizeof text - 1, question);
+    size_t length = quote(text, MAX_ROW, question);
+    length += (size_t)snprintf(text + length, sizeof text - length, "\nkey,status,reason");
+    for (int i = 0; journal->name_at(i, name, sizeof name) && length < sizeof text - MAX_NAME - 2; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, ",%s", name);
     text[length++] = '\n';
     return append(journal, text, length, error);
 }
@@ -116,10 +141,10 @@ static bool lock(int file) {
 }
 
 ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char *name, const char *question,
-                          void (*kept)(void *context, const char *key, const ck_JournalRow *row), void *context,
-                          ck_Error *error) {
+                          ck_ValueName name_at, void (*kept)(void *context, const char *key, const ck_JournalRow *row),
+                          void *context, ck_Error *error) {
     int failed = ck_path_make(directory);
-    *journal = (ck_Journal){.file = -1, .path = ck_path_join(directory, name)};
+    *journal = (ck_Journal){.file = -1, .path = ck_path_join(directory, name), .name_at = name_at};
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
     if (!journal->path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     journal->file = open(journal->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -143,7 +168,8 @@ ck_Status ck_journal_read(const ck_Journal *journal, const char *question,
     char *text = read_lines(journal->file, &length);
     ck_Status status = reader && text ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) {
-        *reader = (Reader){.wanted = question, .kept = kept, .context = context};
+        *reader = (Reader){.wanted = question, .kept = kept, .context = context, .name_at = journal->name_at};
+        for (int i = 0; i < CK_JOURNAL_VALUES; i++) reader->row.values[i] = NAN;
         status = parse(reader, text, length, error);
     }
     if (!status && !ck_journal_is_same(reader->question, question))
@@ -158,10 +184,11 @@ ck_Status ck_journal_read(const ck_Journal *journal, const char *question,
 
 ck_Status ck_journal_add(const ck_Journal *journal, const char *key, const ck_JournalRow *row, ck_Error *error) {
     char text[2 * MAX_ROW];
+    int count = count_values(journal->name_at);
     size_t used = quote(text, MAX_ROW / 2, key);
     used += (size_t)snprintf(text + used, sizeof text - used, ",%d,", row->status);
     used += quote(text + used, MAX_ROW / 2, row->reason);
-    for (int i = 0; i < CK_JOURNAL_VALUES; i++)
+    for (int i = 0; i < count; i++)
         used += (size_t)(isnan(row->values[i]) ? snprintf(text + used, sizeof text - used, ",")
                                                : snprintf(text + used, sizeof text - used, ",%.17g", row->values[i]));
     text[used++] = '\n';

@@ -231,6 +231,14 @@ static void describe(const void *context, int index, char *key, size_t size) {
 }
 
 enum { CPU, DISTANCE, METRICS };
+bool ck_needs_value(int index, char *name, size_t size) {
+    if (index >= METRICS + ck_metric_count()) return false;
+    snprintf(name, size, "%s",
+             index == CPU        ? "cpu_s"
+             : index == DISTANCE ? "position_rms to the scene as it is"
+                                 : ck_metric_at(index - METRICS)->name);
+    return true;
+}
 _Static_assert(METRICS + CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOURNAL_VALUES");
 
 static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Error *error) {
@@ -271,7 +279,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
 }
 
 ck_Study ck_needs_study(const ck_Needs *needs) {
-    return (ck_Study){"needs", needs->case_count, (void *)needs, describe, run};
+    return (ck_Study){"needs", ck_needs_value, needs->case_count, (void *)needs, describe, run};
 }
 
 // By how much a metric changes: as it is where it is dimensionless, else relative. One that starts or ends to apply has

@@ -18,6 +18,14 @@
 
 enum { DT, SUBSTEPS, ITERATIONS, ERROR, SAG_ERROR, STRETCH_ERROR, CPU, CPU_RANGE };
 
+bool ck_precision_value(int index, char *name, size_t size) {
+    static const char *const names[] = {"time_step_s", "substeps",      "iterations", "error",
+                                        "sag_error",   "stretch_error", "cpu_s",      "cpu_iqr_s"};
+    if (index >= (int)(sizeof names / sizeof *names)) return false;
+    snprintf(name, size, "%s", names[index]);
+    return true;
+}
+
 static void add_case(ck_Precision *precision, const ck_Engine *engine, ck_Settings settings, bool is_ladder) {
     for (int i = 0; i < precision->case_count; i++) {
         const ck_PrecisionCase *other = &precision->cases[i];
@@ -102,7 +110,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
 }
 
 ck_Study ck_precision_study(const ck_Precision *precision) {
-    return (ck_Study){"precision", precision->case_count, (void *)precision, describe, run};
+    return (ck_Study){"precision", ck_precision_value, precision->case_count, (void *)precision, describe, run};
 }
 
 static bool counts(const ck_JournalRow *row) {

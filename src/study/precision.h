@@ -34,4 +34,7 @@ ck_Study ck_precision_study(const ck_Precision *precision);
 // Adds a row a case, with the Pareto front marked; and to summary each engine's order, floor and cost to 10, 1, 0.1 %.
 void ck_precision_write(const ck_Precision *precision, const ck_JournalRow *rows, ck_Csv *csv, ck_Csv *summary);
 
+// The names of the values of its journal; signature of ck_ValueName.
+bool ck_precision_value(int index, char *name, size_t size);
+
 #endif

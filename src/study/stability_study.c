@@ -43,6 +43,14 @@ static const char *const class_names[] = {"ok",      "unsettled", "overstretched
 
 enum { CLASS, DT, STRAIN_EXCESS, SPEED, PREDICTED, STABLE, UNSTABLE };
 
+bool ck_stability_value(int index, char *name, size_t size) {
+    static const char *const names[] = {
+        "class", "time_step_s", "strain_excess", "speed_m_s", "predicted_step_s", "stable_step_s", "unstable_step_s"};
+    if (index >= (int)(sizeof names / sizeof *names)) return false;
+    snprintf(name, size, "%s", names[index]);
+    return true;
+}
+
 // force = K·d, N, of small displacements d about a rest: k·[n·nᵀ + (1 − L/l)·(1 − n·nᵀ)] of each spring, or without the
 // first term what tension does across springs.
 static void apply_stiffness(const ck_Model *model, const double *position, const double *d, bool is_across,
@@ -403,5 +411,5 @@ void ck_stability_map_write(const ck_StabilityMap *map, const ck_JournalRow *row
 }
 
 ck_Study ck_stability_map_study(const ck_StabilityMap *map) {
-    return (ck_Study){"stability", map->case_count, (void *)map, describe, run};
+    return (ck_Study){"stability", ck_stability_value, map->case_count, (void *)map, describe, run};
 }

@@ -44,4 +44,7 @@ void ck_stability_map_free(ck_StabilityMap *map);
 ck_Study ck_stability_map_study(const ck_StabilityMap *map);
 void ck_stability_map_write(const ck_StabilityMap *map, const ck_JournalRow *rows, ck_Csv *csv);
 
+// The names of the values of its journal; signature of ck_ValueName.
+bool ck_stability_value(int index, char *name, size_t size);
+
 #endif

@@ -137,7 +137,8 @@ ck_Status ck_study_run(const ck_Study *study, const ck_StudyOptions *options, ck
     if (!board) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     memset(rows, 0, sizeof *rows * (size_t)study->case_count);
     Job job = {study, options, &journal, rows, board};
-    ck_Status status = ck_journal_open(&journal, options->directory, name, options->question, keep, &job, error);
+    ck_Status status =
+        ck_journal_open(&journal, options->directory, name, options->question, study->name_at, keep, &job, error);
     int wanted = 0;
     for (int i = 0; i < study->case_count; i++) wanted += !rows[i].is_done && is_mine(options, i);
     if (!status && wanted && options->runs_nothing)
@@ -179,8 +180,8 @@ static void copy_row(void *context, const char *key, const ck_JournalRow *row) {
     if (!copy->status) copy->status = ck_journal_add(&copy->all, key, row, copy->error);
 }
 
-ck_Status ck_study_merge(const char *directory, const char *study, const char *const *parts, int part_count,
-                         ck_Error *error) {
+ck_Status ck_study_merge(const char *directory, const char *study, ck_ValueName name_at, const char *const *parts,
+                         int part_count, ck_Error *error) {
     char name[64], question[4096], other[4096];
     name_journal(name, sizeof name, study);
     ck_Journal part = {.file = -1};
@@ -192,9 +193,9 @@ ck_Status ck_study_merge(const char *directory, const char *study, const char *c
             status = ck_fail(error, CK_BAD_INPUT, "%s and %s are not parts of one study: they were asked '%s' and '%s'",
                              parts[0], parts[i], question, other);
     }
-    if (!status) status = ck_journal_open(&copy.all, directory, name, question, NULL, NULL, error);
+    if (!status) status = ck_journal_open(&copy.all, directory, name, question, name_at, NULL, NULL, error);
     for (int i = 0; i < part_count && !status; i++) {
-        status = ck_journal_open(&part, parts[i], name, question, copy_row, &copy, error);
+        status = ck_journal_open(&part, parts[i], name, question, name_at, copy_row, &copy, error);
         if (!status) status = copy.status;
         ck_journal_close(&part, false);
     }

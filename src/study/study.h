@@ -5,7 +5,8 @@
 #include "journal.h"
 
 typedef struct ck_Study {
-    const char *name; // of its journal, NAME.journal
+    const char *name;     // of its journal, NAME.journal
+    ck_ValueName name_at; // of the values of its rows
     int case_count;
     void *context;
     // What a case is, in words that no other case of the study has.
@@ -29,9 +30,9 @@ ck_Status ck_study_run(const ck_Study *study, const ck_StudyOptions *options, ck
 
 void ck_study_forget(const ck_Study *study, const ck_StudyOptions *options);
 
-// Joins the journals of name in several directories, all of one question, into one of directory.
-// Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
-ck_Status ck_study_merge(const char *directory, const char *name, const char *const *parts, int part_count,
-                         ck_Error *error);
+// Joins the journals of name, whose rows have values of those names, in several directories, all of one question, into
+// one of directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
+ck_Status ck_study_merge(const char *directory, const char *name, ck_ValueName name_at, const char *const *parts,
+                         int part_count, ck_Error *error);
 
 #endif

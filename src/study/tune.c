@@ -47,6 +47,13 @@ typedef struct Search {
 
 enum { ERROR, SAG_ERROR, STRETCH_ERROR, CPU, TIME_STEP };
 
+static bool value_name(int index, char *name, size_t size) {
+    static const char *const names[] = {"error", "sag_error", "stretch_error", "cpu_s", "time_step_s"};
+    if (index >= (int)(sizeof names / sizeof *names)) return false;
+    snprintf(name, size, "%s", names[index]);
+    return true;
+}
+
 static double work_of(const Search *search, const ck_Settings *settings) {
     return settings->substeps * (1 + fmax(1, settings->iterations)) / search->comparison->model.step;
 }
@@ -381,8 +388,8 @@ ck_Status ck_tune_run(ck_Tuning *tuning, const ck_Comparison *comparison, const 
         (Search){.comparison = comparison, .options = options, .csv = csv, .journal = {.file = -1}, .error = error};
     ck_Status status = prepare(search, error);
     if (!status)
-        status = ck_journal_open(&search->journal, options->directory, "tune.journal", options->question, take_kept,
-                                 search, error);
+        status = ck_journal_open(&search->journal, options->directory, "tune.journal", options->question, value_name,
+                                 take_kept, search, error);
     if (!status) {
         // first what the engine's own rule sets, then everywhere, then around the best
         place(search, &(ck_TunePoint){.settings = search->automatic, .stiffness = 1}, x);
