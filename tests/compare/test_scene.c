@@ -1,6 +1,8 @@
 // Scene files: every bad one gets one clear error with its place, and the shipped ones load.
 #include "fixture_comparison.h"
 
+#include "files.h"
+#include "scene_schema.h"
 #include "vector.h"
 
 #include "scene.h"
@@ -260,6 +262,54 @@ static void test_shipped_scenes(void **state) {
     globfree(&found);
 }
 
+static char *read_text(const char *path) {
+    char *text = NULL;
+    size_t size;
+    ck_Error error = {0};
+    if (ck_file_read(&text, &size, path, &error)) fail_msg("%s", error.message);
+    return text;
+}
+
+static int load_blocks(const char *text) {
+    int count = 0;
+    for (const char *at = strstr(text, "```yaml\n"); at; at = strstr(at + 1, "```yaml\n"), count++) {
+        char *scene = strndup(at + 8, (size_t)(strstr(at + 8, "```") - at - 8));
+        ck_Comparison comparison;
+        fixture_load_comparison(&comparison, scene);
+        ck_comparison_free(&comparison);
+        free(scene);
+    }
+    return count;
+}
+
+// Each scene that a README shows is one.
+static void test_readme_scenes(void **state) {
+    (void)state;
+    static const char *const readmes[] = {SCENE_DIRECTORY "/../README.md", SCENE_DIRECTORY "/README.md"};
+    for (size_t i = 0; i < sizeof readmes / sizeof *readmes; i++) {
+        char *text = read_text(readmes[i]);
+        assert_int_equal(load_blocks(text), 1);
+        free(text);
+    }
+}
+
+static void find_keys(const cyaml_schema_value_t *value, const char *readme) {
+    if (value->type == CYAML_SEQUENCE || value->type == CYAML_SEQUENCE_FIXED) find_keys(value->sequence.entry, readme);
+    if (value->type != CYAML_MAPPING) return;
+    for (const cyaml_schema_field_t *field = value->mapping.fields; field->key; field++) {
+        if (!strstr(readme, field->key)) fail_msg("scenes/README.md does not tell of %s", field->key);
+        find_keys(&field->value, readme);
+    }
+}
+
+// The README tells of every key of the schema.
+static void test_readme_keys(void **state) {
+    (void)state;
+    char *text = read_text(SCENE_DIRECTORY "/README.md");
+    find_keys(&ck_scene_schema, text);
+    free(text);
+}
+
 // Noise moves free nodes out of the plane of a network, wherever that lies, and across the line of one that has none.
 static void test_network_noise(void **state) {
     (void)state;
@@ -313,6 +363,7 @@ int main(void) {
         cmocka_unit_test(test_bad_scenes),      cmocka_unit_test(test_bad_files),
         cmocka_unit_test(test_every_key),       cmocka_unit_test(test_network_noise),
         cmocka_unit_test(test_frames_a_second), cmocka_unit_test(test_shipped_scenes),
+        cmocka_unit_test(test_readme_scenes),   cmocka_unit_test(test_readme_keys),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

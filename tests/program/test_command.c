@@ -2,6 +2,8 @@
 #include "fixture.h"
 #include "fixture_program.h"
 
+#include "files.h"
+
 #include <glob.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -76,6 +78,18 @@ static void test_usage(void **state) {
         if (status != cases[i].status) fail_msg("'%s' ended with %d", cases[i].arguments, status);
         fixture_assert_output(cases[i].output);
     }
+}
+
+// The tables of README files are what the program prints.
+static void test_readme_tables(void **state) {
+    (void)state;
+    assert_int_equal(fixture_program("help --columns"), 0);
+    char *printed = fixture_read("output"), *readme = NULL;
+    size_t size;
+    assert_int_equal(ck_file_read(&readme, &size, SCENE_DIRECTORY "/../reports/README.md", NULL), CK_OK);
+    if (!strstr(readme, printed)) fail_msg("reports/README.md does not hold the output of clothcheck help --columns");
+    free(readme);
+    free(printed);
 }
 
 // A bad scene among good ones: nothing runs, nothing is written, not even the directory.
@@ -258,6 +272,7 @@ static void test_keeping(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
+        cmocka_unit_test(test_readme_tables),
         cmocka_unit_test(test_bad_input_writes_nothing),
         cmocka_unit_test(test_two_scenes_of_one_name),
         cmocka_unit_test(test_unwritable_output),

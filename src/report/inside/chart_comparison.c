@@ -66,17 +66,6 @@ int ck_chart_select_cost(const ck_ReportData *data, const char *scene, FILE *out
     return rows;
 }
 
-// Errors of what a run ends in, not of what is only ever small.
-static bool is_answer(const char *metric) {
-    static const char *const shown[] = {"position_rms",  "sag",          "stretch_max", "stretch_rms",
-                                        "sag_path",      "energy_path",  "period",      "restitution",
-                                        "rest_height",   "friction",     "tunnelled",   "penetration_max",
-                                        "wrap_friction", "contact_force"};
-    for (size_t i = 0; i < sizeof shown / sizeof *shown; i++)
-        if (!strcmp(shown[i], metric)) return true;
-    return false;
-}
-
 int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *out) {
     const ck_CsvTable *metrics = ck_report_table(data, CK_METRICS);
     int rows = 0;
@@ -84,7 +73,7 @@ int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *o
         const char *metric = ck_csv_table_text(metrics, row, 2);
         double error = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error"));
         if (!ck_report_is_of(metrics, row, scene) || !is_shown(ck_csv_table_text(metrics, row, 1)) ||
-            !is_answer(metric) || !isfinite(error))
+            !ck_report_shows(metric) || !isfinite(error))
             continue;
         double uncertainty = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "truth_uncertainty"));
         fprintf(out, "%s,%s,%.9g,%.9g\n", ck_csv_table_text(metrics, row, 1), metric, on_axis(error), uncertainty);

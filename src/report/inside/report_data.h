@@ -44,6 +44,9 @@ const ck_CsvTable *ck_report_table(const ck_ReportData *data, ck_LayoutName name
 // was timed.
 bool ck_summary_counts(const ck_Summary *one);
 
+// Whether the errors of a metric are shown.
+bool ck_report_shows(const char *metric);
+
 // True where a row is of a scene, which stands in the first column.
 bool ck_report_is_of(const ck_CsvTable *table, int row, const char *scene);
 
