@@ -80,7 +80,7 @@ static const Option table[] = {
      .help = "replace whatever results --out holds"},
     {"rounds", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(rounds), 1, 99, .fallback = "7", .help = "repeats, 1 to 99"},
     {"largest", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(largest), 16, 2048, .fallback = "1024",
-     .help = "side of the largest cloth in the growth, 16 to 2048"},
+     .help = "side of the largest cloth, 16 to 2048"},
 };
 #define OPTIONS ((int)(sizeof table / sizeof *table))
 

@@ -28,24 +28,28 @@ bool ck_settings_has(const ck_Settings *settings, int slot) {
 }
 
 double ck_settings_get(const ck_Settings *settings, int slot) {
+    if (slot >= CK_OWN) return settings->own[slot - CK_OWN];
     switch (slot) {
     case CK_SUBSTEPS: return settings->substeps;
     case CK_ITERATIONS: return settings->iterations;
     case CK_RELAXATION: return settings->relaxation;
     case CK_SOFTNESS: return settings->softness;
-    case CK_THREADS: return settings->threads;
-    default: return settings->own[slot - CK_OWN];
+    default: return settings->threads;
     }
 }
 
 void ck_settings_set(ck_Settings *settings, int slot, double value) {
+    if (slot >= CK_OWN) {
+        settings->own[slot - CK_OWN] = value;
+        settings->own_set |= 1u << (slot - CK_OWN);
+        return;
+    }
     switch (slot) {
     case CK_SUBSTEPS: settings->substeps = (uint32_t)value; break;
     case CK_ITERATIONS: settings->iterations = (uint32_t)value; break;
     case CK_RELAXATION: settings->relaxation = value; break;
     case CK_SOFTNESS: settings->softness = value; break;
-    case CK_THREADS: settings->threads = (uint32_t)value; break;
-    default: settings->own[slot - CK_OWN] = value; settings->own_set |= 1u << (slot - CK_OWN);
+    default: settings->threads = (uint32_t)value;
     }
 }
 

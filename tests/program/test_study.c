@@ -248,11 +248,25 @@ static void test_keeping(void **state) {
     free(text);
 }
 
+// Every engine that takes a rope is timed on it.
+static void test_bench(void **state) {
+    (void)state;
+    char arguments[100];
+    snprintf(arguments, sizeof arguments, "bench --rounds 1 --largest 16 --out %s/bench", fixture_directory);
+    assert_int_equal(fixture_program(arguments), 0);
+    char *csv = fixture_read("bench/bench.csv");
+    assert_non_null(csv);
+    assert_non_null(strstr(csv, "rope,1000,999,native-verlet,,step_time,s,"));
+    assert_non_null(strstr(csv, "rope,1000,999,bullet-pbd,10 iterations,update_time,s,"));
+    free(csv);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),     cmocka_unit_test(test_shards),
         cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical), cmocka_unit_test(test_needs),
-        cmocka_unit_test(test_half),        cmocka_unit_test(test_keeping),  cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_bench),       cmocka_unit_test(test_half),     cmocka_unit_test(test_keeping),
+        cmocka_unit_test(test_precision),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
