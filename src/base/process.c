@@ -2,7 +2,9 @@
 
 #include <errno.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -105,25 +107,31 @@ static void describe(ck_ChildResult *result, int status, const ck_Limits *limits
     if (result->end == CK_CHILD_DONE) result->end = CK_CHILD_ABORTED;
 }
 
+// A child must not inherit the writing end of another one's pipe, whose end would then not be seen.
+static pthread_mutex_t starting = PTHREAD_MUTEX_INITIALIZER;
+
 ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *context, const ck_Limits *limits,
                        ck_Error *error) {
     *result = (ck_ChildResult){0};
     int output = memfd_create("output", MFD_CLOEXEC), alive[2] = {-1, -1};
     ck_Status status = CK_OK;
+    pthread_mutex_lock(&starting);
     if (output < 0 || pipe(alive)) {
         status = ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+        pthread_mutex_unlock(&starting);
         goto cleanup;
     }
     // else what is buffered here would be printed twice
     fflush(NULL);
     pid_t child = fork();
+    if (child == 0) be_child(work, context, output, alive[1]);
+    close(alive[1]);
+    alive[1] = -1;
+    pthread_mutex_unlock(&starting);
     if (child < 0) {
         status = ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
         goto cleanup;
     }
-    if (child == 0) be_child(work, context, output, alive[1]);
-    close(alive[1]);
-    alive[1] = -1;
     result->end = watch(child, alive[0], limits);
     if (result->end != CK_CHILD_DONE) kill(child, SIGKILL);
     int wait_status = 0;
@@ -137,4 +145,50 @@ cleanup:
     if (alive[0] >= 0) close(alive[0]);
     if (alive[1] >= 0) close(alive[1]);
     return status;
+}
+
+typedef struct Crew {
+    int count;
+    atomic_int next;
+    ck_Status (*work)(void *context, int index, ck_Error *error);
+    void *context;
+    pthread_mutex_t lock;
+    int failed; // the lowest index that did; count: none
+    ck_Status status;
+    ck_Error error;
+} Crew;
+
+static void *join_crew(void *context) {
+    Crew *crew = context;
+    for (int i; (i = atomic_fetch_add(&crew->next, 1)) < crew->count;) {
+        ck_Error error = {0};
+        ck_Status status = crew->work(crew->context, i, &error);
+        pthread_mutex_lock(&crew->lock);
+        if (status && i < crew->failed) {
+            crew->failed = i;
+            crew->status = status;
+            crew->error = error;
+        }
+        pthread_mutex_unlock(&crew->lock);
+    }
+    return NULL;
+}
+
+#define MOST_THREADS 64
+
+ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int index, ck_Error *error), void *context,
+                      ck_Error *error) {
+    Crew crew = {.count = count, .work = work, .context = context, .failed = count};
+    pthread_t threads[MOST_THREADS];
+    int most = jobs > 0 ? jobs : (int)sysconf(_SC_NPROCESSORS_ONLN), started = 0;
+    if (most > count) most = count;
+    if (most > MOST_THREADS) most = MOST_THREADS;
+    pthread_mutex_init(&crew.lock, NULL);
+    // the caller is one of the crew, so that all is done where no thread can be started
+    while (started + 1 < most && !pthread_create(&threads[started], NULL, join_crew, &crew)) started++;
+    join_crew(&crew);
+    for (int i = 0; i < started; i++) pthread_join(threads[i], NULL);
+    pthread_mutex_destroy(&crew.lock);
+    if (crew.status && error) *error = crew.error;
+    return crew.status;
 }

@@ -14,6 +14,7 @@ typedef struct ck_Limits {
     double seconds;      // of wall time
     size_t memory_bytes; // of resident memory; 0: none
     bool foresees;       // a run whose frames so far say that it will take half as long again ends at once
+    double patience;     // s of CPU time that a whole run may cost; 0: any
 } ck_Limits;
 
 // 15 minutes, 4 GiB.
@@ -38,6 +39,12 @@ ck_Status ck_child_check(ck_Error *error);
 // Errors: CK_IO when no process can be started. How the child ended is a result, not an error.
 ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *context), void *context, const ck_Limits *limits,
                        ck_Error *error);
+
+// One thread a core at most, for work that does not share what it writes: work(context, index) of each index below
+// count, at most jobs at a time, in no order; jobs 0: one a core. work may start children. The first error of the
+// lowest index is returned; others go on to their end.
+ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int index, ck_Error *error), void *context,
+                      ck_Error *error);
 
 // Zeroed memory that a child's writes are seen in. NULL when there is none. Free with ck_shared_free.
 void *ck_shared_allocate(size_t bytes);

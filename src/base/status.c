@@ -14,6 +14,6 @@ ck_Status ck_fail(ck_Error *error, ck_Status status, const char *format, ...) {
 }
 
 const char *const ck_run_status_names[CK_RUN_STATUS_COUNT] = {
-    "ok",      "unsettled", "overstretched", "energy_gain", "diverged",
-    "aborted", "timed_out", "out_of_memory", "unsupported", "refused",
+    "ok",        "unsettled", "overstretched", "energy_gain", "diverged", "aborted",
+    "timed_out", "too_slow",  "out_of_memory", "unsupported", "refused",
 };

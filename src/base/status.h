@@ -8,11 +8,10 @@ extern "C" {
 
 typedef enum ck_Status {
     CK_OK = 0,
-    CK_BAD_INPUT,   // the user's file or argument is wrong; the message says where and what would be right
-    CK_NO_MEMORY,   // an allocation failed
-    CK_IO,          // a file or a pipe could not be read or written
-    CK_UNSUPPORTED, // the engine lacks a term that the scene needs
-    CK_REFUSED,     // the engine could, but would not finish or fit; the message says why
+    CK_BAD_INPUT, // the user's file or argument is wrong; the message says where and what would be right
+    CK_NO_MEMORY, // an allocation failed
+    CK_IO,        // a file or a pipe could not be read or written
+    CK_REFUSED,   // the engine could, but would not finish or fit; the message says why
 } ck_Status;
 
 // Filled by the function that fails. A caller may pass NULL where it does not care.
@@ -33,6 +32,7 @@ typedef enum ck_RunStatus {
     CK_RUN_DIVERGED,      // left the finite numbers
     CK_RUN_ABORTED,
     CK_RUN_TIMED_OUT,
+    CK_RUN_TOO_SLOW, // would have cost more CPU time than the caller has patience for
     CK_RUN_OUT_OF_MEMORY,
     CK_RUN_UNSUPPORTED, // the scene needs a term that the engine lacks
     CK_RUN_REFUSED,

@@ -19,31 +19,34 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_ERROR = 64,
     CK_TAKES_UPDATE = 128,
     CK_TAKES_KEEPING = 256, // --append, --force
-    CK_TAKES_BENCH = 512
+    CK_TAKES_BENCH = 512,
+    CK_TAKES_PATIENCE = 1024
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
 struct ck_Command {
     const char *name, *arguments, *about;
-    const char *help; // what it does, in some lines
-    unsigned groups;  // of options
-    const char *out;  // where it writes to, where --out does not say; NULL: nowhere
-    double seconds;   // of wall time that a run may take, where --time-limit does not say
+    const char *help;    // what it does, in some lines
+    unsigned groups;     // of options
+    const char *out;     // where it writes to, where --out does not say; NULL: nowhere
+    double seconds;      // of wall time that a run may take, where --time-limit does not say
+    double full_seconds; // the same with --full; 0: as without
+    double patience;     // s of CPU time that a run may cost, where --patience does not say; 0: any
     // argv[0] is the command's name. Returns the exit status.
     int (*run)(const ck_Command *command, int argc, char **argv);
 };
 
-extern const ck_Command ck_command_list, ck_command_run, ck_command_compare, ck_command_check, ck_command_precision,
-    ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge, ck_command_report, ck_command_claims,
-    ck_command_bench;
+extern const ck_Command ck_command_demo, ck_command_list, ck_command_run, ck_command_compare, ck_command_check,
+    ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge, ck_command_report,
+    ck_command_claims, ck_command_bench;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
+    const ck_Command *command;
     ck_CompareOptions options;
     const ck_Engine *engines[CK_COMPARISON_MAX_ENGINES];
     ck_Override overrides[64];
     const char *out; // directory; NULL: none
-    int jobs;        // worker processes of a study; 0: as many as suit it
     int shard, shards;
     bool runs_nothing;
     bool appends, forces;  // into a directory that holds other results: keeps them, replaces them
@@ -102,6 +105,13 @@ int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Compar
 
 // Prints one line per engine: status, error and cost. With a header when first is true.
 void ck_print_summary(const ck_Comparison *comparison);
+
+// Says which engine is the cheapest within 1 % of the truth, which comes next, and what to type next.
+void ck_print_answer(const ck_Comparison *comparison);
+
+// Print what a study of a scene came to, of the CSVs in a directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
+ck_Status ck_print_precision(const char *directory, const char *scene, ck_Error *error);
+ck_Status ck_print_stability(const char *directory, const char *scene, ck_Error *error);
 
 // Asks for signals to end what runs, so that whole files or none are left.
 void ck_command_catch_signals(void);

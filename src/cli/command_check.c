@@ -71,7 +71,7 @@ static ck_Status list_cases(Work *work, ck_Error *error) {
 
 static ck_Status run_cases(Work *work, ck_Error *error) {
     const ck_Study study = ck_check_study(&work->check);
-    int jobs = work->arguments.jobs ? work->arguments.jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    int jobs = work->arguments.options.jobs ? work->arguments.options.jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
     // a check is of the code as it is now: nothing is taken from an older one
     const ck_StudyOptions options = {work->arguments.out, "check", jobs > 0 ? jobs : 1, 0, 0, false};
     ck_study_forget(&study, &options);

@@ -20,6 +20,7 @@ static void print_outliers(const ck_Comparison *comparison) {
 static void show(const ck_Comparison *comparison) {
     ck_print_summary(comparison);
     print_outliers(comparison);
+    ck_print_answer(comparison);
     printf("\n");
     fflush(stdout);
 }
@@ -32,8 +33,8 @@ static int run(const ck_Command *command, int argc, char **argv) {
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
     if (result == CK_EXIT_OK)
         printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second "
-               "(median).\nCSVs: %s\n",
-               arguments.out);
+               "(median).\nCSVs: %s\nNext: clothcheck report %s\n",
+               arguments.out, arguments.out);
     ck_arguments_free(&arguments);
     return result;
 }
@@ -45,8 +46,9 @@ const ck_Command ck_command_compare = {
     .help = "Runs all engines on all scenes (without SCENE: scenes/*.yaml) and writes runs.csv, metrics.csv, "
             "deviations.csv,\nledger.csv, series.csv and machine.csv into --out. Results there that this "
             "comparison would not\nreplace stop it: --append keeps those of other scenes, --force replaces all.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_KEEPING,
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS | CK_TAKES_KEEPING,
     .out = "out",
     .seconds = 900,
+    .patience = 10,
     .run = run,
 };

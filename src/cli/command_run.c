@@ -5,6 +5,7 @@
 
 static void show(const ck_Comparison *comparison) {
     ck_print_summary(comparison);
+    ck_print_answer(comparison);
     for (int i = 0; i < comparison->run_count; i++) {
         const ck_Run *run = &comparison->runs[i];
         printf("\n%s: %s; %u substeps", run->engine->name, run->reason, run->used.substeps);
@@ -27,6 +28,8 @@ static int run(const ck_Command *command, int argc, char **argv) {
                          arguments.scene_count ? "run takes one SCENE; %d are given; compare takes several"
                                                : "run takes one SCENE; none is given; 'clothcheck list' tells them",
                          arguments.scene_count);
+    // it is only written to CSVs
+    if (!arguments.out) arguments.options.consistency_budget = 0;
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
     ck_arguments_free(&arguments);
     return result;
@@ -37,7 +40,8 @@ const ck_Command ck_command_run = {
     .arguments = "SCENE",
     .about = "one scene, chosen engines: summary and ledger; CSVs with --out",
     .help = "Runs one scene and prints a summary and what each engine made of the scene.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_KEEPING,
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS | CK_TAKES_KEEPING,
     .seconds = 900,
+    .patience = 10,
     .run = run,
 };

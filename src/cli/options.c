@@ -29,6 +29,7 @@ typedef struct Option {
 
 static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_full(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_seed(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error *error);
@@ -52,14 +53,18 @@ static const Option table[] = {
      .help = "wall seconds that one run may take"},
     {"memory-limit", "MIB", 0, CK_TAKES_RUNS, OTHER, .fallback = "4096", .read = set_memory,
      .help = "memory that one run may take"},
-    {"repeats", "N", 'r', CK_TAKES_TIMING, COUNT, PLACE(options.repeats), 0, CK_MAX_REPEATS, .fallback = "5",
-     .help = "timed repeats, 0 to 99"},
-    {"budget", "S", 0, CK_TAKES_TIMING, NUMBER, PLACE(options.budget), 0, 1e6, .fallback = "2",
+    {"repeats", "N", 'r', CK_TAKES_TIMING, COUNT, PLACE(options.repeats), 0, CK_MAX_REPEATS,
+     .fallback = "until the median is known to 2 %, or a second is spent", .help = "timed repeats, 0 to 99"},
+    {"patience", "S", 'p', CK_TAKES_PATIENCE, NUMBER, PLACE(options.limits.patience), 0, 1e9,
+     .help = "CPU seconds that a whole run may cost, or it is cut and scored as far as it came; 0: any"},
+    {"full", NULL, 0, CK_TAKES_TIMING, OTHER, .read = set_full,
+     .help = "all the depth: any cost, five repeats of up to 2 s, self-consistency of costly engines, too"},
+    {"budget", "S", 0, CK_TAKES_TIMING, NUMBER, PLACE(options.budget), 0, 1e6, .fallback = "0.5",
      .help = "CPU seconds a timed repeat at most"},
     {"seed", "N", 0, CK_TAKES_TIMING, OTHER, .fallback = "1", .read = set_seed,
      .help = "for the order in which engines are timed"},
-    {"jobs", "N", 'j', CK_TAKES_JOBS, COUNT, PLACE(jobs), 1, 1024, .fallback = "one a core; one where time counts",
-     .help = "worker processes", .is_way = true},
+    {"jobs", "N", 'j', CK_TAKES_JOBS, COUNT, PLACE(options.jobs), 1, 1024,
+     .fallback = "one a core; one where time counts", .help = "worker processes", .is_way = true},
     {"shard", "I/N", 0, CK_TAKES_SHARD, OTHER, .read = read_shard, .is_way = true,
      .help = "only every N-th case, from the I-th; 'clothcheck merge' joins the parts"},
     {"kept", NULL, 0, CK_TAKES_SHARD, FLAG, PLACE(runs_nothing), .is_way = true,
@@ -95,6 +100,8 @@ ck_OptionText ck_option_text(const ck_Command *command, int index) {
             snprintf(text.fallback, sizeof text.fallback, "%s", command->out);
         if (option->place == PLACE(options.limits.seconds) && option->kind == NUMBER)
             snprintf(text.fallback, sizeof text.fallback, "%g", command->seconds);
+        if (option->place == PLACE(options.limits.patience) && option->kind == NUMBER)
+            snprintf(text.fallback, sizeof text.fallback, "%g", command->patience);
         return text;
     }
     return (ck_OptionText){0};
@@ -204,6 +211,17 @@ static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error
     return status;
 }
 
+static ck_Status set_full(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    (void)text, (void)error;
+    ck_CompareOptions *options = &arguments->options;
+    options->repeats = 5;
+    options->budget = 2;
+    options->consistency_budget = 10;
+    options->limits.patience = 0;
+    if (arguments->command->full_seconds > 0) options->limits.seconds = arguments->command->full_seconds;
+    return CK_OK;
+}
+
 static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error *error) {
     double number;
     ck_Status status = read_number(&number, text, 0, 1e9, "--memory-limit", error);
@@ -295,10 +313,10 @@ static void list_options(const ck_Command *command, struct option *options, char
     *letters++ = ':';
     for (int i = 0; i < OPTIONS; i++) {
         if (!(table[i].groups & command->groups)) continue;
-        *options++ = (struct option){table[i].name, table[i].kind == FLAG ? no_argument : required_argument, NULL, i};
+        *options++ = (struct option){table[i].name, table[i].value ? required_argument : no_argument, NULL, i};
         if (!table[i].letter) continue;
         *letters++ = table[i].letter;
-        if (table[i].kind != FLAG) *letters++ = ':';
+        if (table[i].value) *letters++ = ':';
     }
     *options = (struct option){0};
     *letters = 0;
@@ -316,6 +334,8 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
     *arguments = (ck_Arguments){
         .options = ck_compare_options_default(), .error = NAN, .rounds = 7, .largest = 1024, .out = command->out};
     arguments->options.overrides = arguments->overrides;
+    arguments->command = command;
+    arguments->options.limits.patience = command->patience;
     if (command->seconds > 0) arguments->options.limits.seconds = command->seconds;
     struct option options[OPTIONS + 1];
     char letters[2 * OPTIONS + 2];

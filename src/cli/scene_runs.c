@@ -88,12 +88,13 @@ static void print_number(const char *format, int width, double number) {
 
 static void print_engine(const ck_Comparison *comparison, int index) {
     const ck_Run *run = &comparison->runs[index];
-    const ck_Reference *reference = &comparison->truth.reference;
     double sag = NAN, sag_error = NAN, distance = NAN;
-    if (ck_comparison_has_path(comparison, index)) {
-        sag = ck_metric_value(ck_metric_find("sag"), run->model, &run->trajectory, reference);
-        sag_error = fabs(sag - ck_metric_truth(ck_metric_find("sag"), run->model, reference));
-        distance = ck_metric_value(ck_metric_find("position_rms"), run->model, &run->trajectory, reference);
+    ck_Model model;
+    ck_Reference reference;
+    if (ck_comparison_scores(comparison, index, &model, &reference)) {
+        sag = ck_metric_value(ck_metric_find("sag"), &model, &run->trajectory, &reference);
+        sag_error = fabs(sag - ck_metric_truth(ck_metric_find("sag"), &model, &reference));
+        distance = ck_metric_value(ck_metric_find("position_rms"), &model, &run->trajectory, &reference);
     }
     double simulated = run->timing.frames * run->model->step;
     printf("%-18s %-16s %-13s", run->model->name, run->engine->name, ck_run_status_names[run->status]);

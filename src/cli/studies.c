@@ -60,7 +60,7 @@ int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, 
 
 static ck_StudyOptions options_of(const ck_StudyCommand *command, int jobs) {
     const ck_Arguments *arguments = command->arguments;
-    int wanted = arguments->jobs ? arguments->jobs : jobs ? jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    int wanted = arguments->options.jobs ? arguments->options.jobs : jobs ? jobs : (int)sysconf(_SC_NPROCESSORS_ONLN);
     return (ck_StudyOptions){arguments->out,   command->question, wanted > 0 ? wanted : 1,
                              arguments->shard, arguments->shards, arguments->runs_nothing};
 }
@@ -76,5 +76,5 @@ ck_Status ck_study_command_run(const ck_StudyCommand *command, const ck_Study *s
 void ck_study_command_done(const ck_StudyCommand *command, const ck_Study *study, const char *files) {
     const ck_StudyOptions options = options_of(command, 1);
     if (options.shards <= 1) ck_study_forget(study, &options);
-    printf("CSVs: %s/{%s}\n", options.directory, files);
+    printf("CSVs: %s/{%s}\nNext: clothcheck report %s\n", options.directory, files, options.directory);
 }

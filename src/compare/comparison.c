@@ -16,9 +16,10 @@ ck_CompareOptions ck_compare_options_default(void) {
     return (ck_CompareOptions){
         .engines = all_engines,
         .engine_count = ck_engine_count(),
-        .repeats = 5,
-        .budget = 2,
-        .consistency_budget = 10,
+        .repeats = CK_REPEAT_UNTIL_KNOWN,
+        .budget = 0.5,
+        .enough = CK_TIMING_ENOUGH,
+        .consistency_budget = 1,
         .seed = 1,
         .limits = ck_limits_default(),
     };
@@ -82,28 +83,42 @@ static ck_Status tell_fold(ck_Comparison *comparison, int index, ck_Error *error
     return CK_OK;
 }
 
+typedef struct Work {
+    ck_Comparison *comparison;
+    const ck_CompareOptions *options;
+} Work;
+
+// The measured pass of an engine, and all that is told of it alone.
+static ck_Status measure_one(void *context, int index, ck_Error *error) {
+    const Work *work = context;
+    const ck_CompareOptions *options = work->options;
+    // the costly ones stand last in the table: begun first, they do not end last
+    int i = options->engine_count - 1 - index;
+    ck_Comparison *comparison = work->comparison;
+    ck_Run *run = &comparison->runs[i];
+    ck_Settings wanted = ck_comparison_settings(options->engines[i], &comparison->scene, options);
+    report(options, comparison, i, "measuring");
+    ck_Status status = ck_verdict_run(run, &comparison->model, &comparison->truth.reference, options->engines[i],
+                                      &wanted, &options->limits, error);
+    if (status || !ck_run_has_all_frames(run)) return status;
+    status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used,
+                                  &comparison->truth, error);
+    if (!status) status = tell_fold(comparison, i, error);
+    report(options, comparison, i, "restarting");
+    if (!status && options->consistency_budget > 0)
+        status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget, &options->limits,
+                                        error);
+    return status;
+}
+
+// Side by side: what is timed is timed later, and alone.
 static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error) {
     for (int i = 0; i < options->engine_count; i++) {
-        ck_Run *run = &comparison->runs[i];
-        ck_Settings wanted = ck_comparison_settings(options->engines[i], &comparison->scene, options);
-        report(options, comparison, i, "measuring");
-        ck_Status status = ck_verdict_run(run, &comparison->model, &comparison->truth.reference, options->engines[i],
-                                          &wanted, &options->limits, error);
-        comparison->run_count = i + 1;
         for (int step = 0; step < CK_CONSISTENCY_STEPS; step++) comparison->consistency[i][step] = NAN;
         comparison->folds[i] = (ck_Fold){NAN, NAN, NAN};
-        if (status) return status;
-        if (!ck_comparison_has_path(comparison, i)) continue;
-        status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used,
-                                      &comparison->truth, error);
-        if (!status) status = tell_fold(comparison, i, error);
-        report(options, comparison, i, "restarting");
-        if (!status && options->consistency_budget > 0)
-            status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget,
-                                            &options->limits, error);
-        if (status) return status;
     }
-    return CK_OK;
+    comparison->run_count = options->engine_count;
+    return ck_parallel(options->engine_count, options->jobs, measure_one, &(Work){comparison, options}, error);
 }
 
 // Repeats in rounds, each in an order of its own: a slow spell of the machine hits all engines alike.
@@ -111,15 +126,20 @@ static ck_Status time_all(ck_Comparison *comparison, const ck_CompareOptions *op
     ck_Random random = ck_random_seed(options->seed);
     int order[CK_COMPARISON_MAX_ENGINES];
     for (int i = 0; i < options->engine_count; i++) order[i] = i;
-    for (int round = 0; round < options->repeats; round++) {
+    bool until_known = options->repeats == CK_REPEAT_UNTIL_KNOWN;
+    int rounds = until_known ? CK_MAX_REPEATS : options->repeats;
+    for (int round = 0; round < rounds; round++) {
         for (int i = options->engine_count - 1; i > 0; i--) {
             int other = (int)(ck_random_next(&random) % (uint64_t)(i + 1)), kept = order[i];
             order[i] = order[other];
             order[other] = kept;
         }
         for (int i = 0; i < options->engine_count; i++) {
+            ck_Run *run = &comparison->runs[order[i]];
+            if (!ck_run_has_all_frames(run) || (until_known && ck_timing_is_known(&run->timing, options->enough)))
+                continue;
             report(options, comparison, order[i], "timing");
-            ck_Status status = ck_run_time(&comparison->runs[order[i]], options->budget, &options->limits, error);
+            ck_Status status = ck_run_time(run, options->budget, &options->limits, error);
             if (status) return status;
         }
     }
@@ -142,6 +162,20 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
 
 bool ck_comparison_has_path(const ck_Comparison *comparison, int run) {
     return ck_run_has_all_frames(&comparison->runs[run]);
+}
+
+bool ck_comparison_scores(const ck_Comparison *comparison, int index, ck_Model *model, ck_Reference *reference) {
+    const ck_Run *run = &comparison->runs[index];
+    *model = comparison->model;
+    *reference = comparison->truth.reference;
+    if (ck_run_has_all_frames(run)) return true;
+    int frames = run->trajectory.frame_count;
+    if (run->status != CK_RUN_TOO_SLOW || frames < 2 || reference->is_static) return false;
+    model->frame_count = frames - 1;
+    model->duration = model->frame_count * model->step;
+    if (reference->trajectory.frame_count > frames) reference->trajectory.frame_count = frames;
+    if (reference->horizon >= frames) reference->horizon = frames - 1;
+    return true;
 }
 
 void ck_comparison_free_runs(ck_Comparison *comparison) {

@@ -19,14 +19,18 @@ typedef struct ck_Override {
     ck_Settings settings; // not set where it leaves the scene's
 } ck_Override;
 
+#define CK_REPEAT_UNTIL_KNOWN (-1)
+
 typedef struct ck_CompareOptions {
     const ck_Engine *const *engines;
     int engine_count;
     const ck_Override *overrides;
     int override_count;
-    int repeats;               // timed; 0: no timing
+    int repeats;               // timed; 0: no timing; CK_REPEAT_UNTIL_KNOWN: as ck_timing_is_known says
     double consistency_budget; // s of CPU time that an engine's self-consistency may take; 0: not measured
     double budget;             // s of CPU time per timed repeat at most
+    double enough;             // s of CPU time for all repeats of an engine, where they end when it is known
+    int jobs;                  // that measure side by side; 0: one a core
     uint64_t seed;             // of the order in which engines are timed
     ck_Limits limits;
     const char *cache; // directory of computed truths; NULL: none
@@ -34,7 +38,8 @@ typedef struct ck_CompareOptions {
     void (*progress)(const char *scene, const char *engine, const char *doing);
 } ck_CompareOptions;
 
-// All engines of the table, 5 repeats of at most 2 s, self-consistency up to 10 s, seed 1, default limits.
+// All engines of the table, timed until it is known, repeats of at most half a second, self-consistency up to 1 s, seed
+// 1, default limits.
 ck_CompareOptions ck_compare_options_default(void);
 
 typedef struct ck_Comparison {
@@ -65,6 +70,10 @@ void ck_comparison_free(ck_Comparison *comparison);
 
 // True where the run has all its frames, so that it can be measured.
 bool ck_comparison_has_path(const ck_Comparison *comparison, int run);
+
+// What a run is scored by: the scene and its truth, or of a run that was cut both up to there. False where it cannot be
+// scored: it has no path, or the truth knows only the end.
+bool ck_comparison_scores(const ck_Comparison *comparison, int run, ck_Model *model, ck_Reference *reference);
 
 // Which engine stands apart: by its error where there is a truth, else by its distance to the others.
 

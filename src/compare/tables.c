@@ -42,6 +42,8 @@ static void add_run(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *
     const ck_Timing *timing = &run->timing;
     char command[4096];
     write_command(command, sizeof command, comparison, run, options);
+    double low, high;
+    ck_timing_interval(timing, &low, &high);
     double median = ck_timing_median(timing), simulated = timing->frames * run->model->step;
     ck_csv_text(csv, run->model->name);
     ck_csv_text(csv, run->engine->name);
@@ -53,6 +55,9 @@ static void add_run(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *
     ck_csv_number(csv, simulated);
     ck_csv_number(csv, median);
     ck_csv_number(csv, ck_timing_iqr(timing));
+    ck_csv_number(csv, low);
+    ck_csv_number(csv, high);
+    ck_csv_count(csv, (uint64_t)timing->repeat_count);
     ck_csv_number(csv, timing->repeat_count ? timing->worst_step : NAN);
     ck_csv_number(csv, simulated / median);
     ck_csv_count(csv, run->peak_rss_bytes);
@@ -63,8 +68,12 @@ static void add_run(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *
 
 static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index) {
     const ck_Run *run = &comparison->runs[index];
-    const ck_Model *model = &comparison->model;
-    const ck_Reference *reference = &comparison->truth.reference, *prediction = &comparison->predictions[index];
+    const ck_Reference *prediction = &comparison->predictions[index];
+    ck_Model part;
+    ck_Reference of_part;
+    if (!ck_comparison_scores(comparison, index, &part, &of_part)) return;
+    const ck_Model *model = &part;
+    const ck_Reference *reference = &of_part;
     for (int i = 0; i < ck_metric_count(); i++) {
         const ck_Metric *metric = ck_metric_at(i);
         double value = ck_metric_value(metric, model, &run->trajectory, reference);
@@ -193,7 +202,7 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
         add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
         add_series(&tables->csv[CK_SERIES], comparison, comparison->runs[i].engine->name,
                    &comparison->runs[i].trajectory);
-        if (ck_comparison_has_path(comparison, i)) add_metrics(&tables->csv[CK_METRICS], comparison, i);
+        add_metrics(&tables->csv[CK_METRICS], comparison, i);
         add_distances(&tables->csv[CK_METRICS], comparison, i);
     }
     add_truth_series(&tables->csv[CK_SERIES], comparison);

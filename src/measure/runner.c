@@ -18,6 +18,7 @@ typedef struct Report {
     int frame_count; // complete frames, the start among them
     double cpu, worst_step;
     double foreseen;    // s that the run would have taken; 0: it was not given up
+    bool is_cut;        // by the caller's patience
     const char *remark; // a literal of the engine's, or NULL
 } Report;
 
@@ -46,6 +47,19 @@ static bool is_hopeless(const Job *job) {
     return report->foreseen > 0;
 }
 
+// What the whole run would cost, s of CPU time.
+static double foresee(const Report *report, int frames) {
+    return report->frame_count > 1 ? report->cpu / (report->frame_count - 1) * frames : INFINITY;
+}
+
+// A fifth of the patience tells what the whole will cost. What misses it by little may go on to its end.
+static bool is_too_slow(const Job *job) {
+    const Report *report = job->report;
+    double patience = job->limits->patience;
+    if (!(patience > 0) || report->frame_count > job->frames || report->cpu < patience / 5) return false;
+    return foresee(report, job->frames) > 1.2 * patience;
+}
+
 static void measure(void *context) {
     const Job *job = context;
     const ck_Engine *engine = job->run->engine;
@@ -61,6 +75,8 @@ static void measure(void *context) {
         if (report->step) break;
         ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
         if (is_hopeless(job)) break;
+        if (is_too_slow(job)) report->is_cut = true;
+        if (report->is_cut) break;
     }
     if (engine->remark) report->remark = engine->remark(state);
     engine->destroy(state);
@@ -95,8 +111,27 @@ static const ck_RunStatus status_of_child[] = {
     [CK_CHILD_NO_MEMORY] = CK_RUN_OUT_OF_MEMORY,
 };
 
+// A single frame may outlast the patience: so many times of it, in wall time, end it.
+#define WAIT_OF_PATIENCE 3
+
+// What ran is the only timing that such a run has.
+static void tell_too_slow(ck_Run *run, const Report *report, const ck_Limits *limits) {
+    int frames = report->frame_count - 1;
+    double whole = foresee(report, run->model->frame_count), time = fmax(0, frames) * run->model->step;
+    run->status = CK_RUN_TOO_SLOW;
+    if (frames < 1) {
+        snprintf(run->reason, sizeof run->reason, "not one frame in %g s; --patience 0 lets it run", limits->seconds);
+        return;
+    }
+    run->timing = (ck_Timing){.frames = frames, .cpu = {report->cpu}, .repeat_count = 1, .worst_step = NAN};
+    snprintf(run->reason, sizeof run->reason,
+             "%.3g s of CPU a simulated second, some %.2g s in all; cut at t = %.4g s; --patience %.0f lets it run",
+             report->cpu / time, whole, time, ceil(1.5 * whole));
+}
+
 // Turns how the child ended and what it reported into the run's status and reason.
-static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *child, const ck_Limits *limits) {
+static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *child, const ck_Limits *limits,
+                     double allowed) {
     run->used = report->used;
     run->ledger = report->ledger;
     run->trajectory.frame_count = report->frame_count;
@@ -105,7 +140,9 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
     run->remark = report->remark;
     run->status = status_of_child[child->end];
     double time = fmax(0, report->frame_count - 1) * run->model->step;
-    if (child->end != CK_CHILD_DONE) {
+    if (report->is_cut || (child->end == CK_CHILD_TIMED_OUT && limits->seconds < allowed)) {
+        tell_too_slow(run, report, limits);
+    } else if (child->end != CK_CHILD_DONE) {
         snprintf(run->reason, sizeof run->reason, "%s, at t = %g s", child->reason, time);
     } else if (report->foreseen > 0) {
         run->status = CK_RUN_TIMED_OUT;
@@ -153,8 +190,10 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
     Report *report = ck_shared_allocate(sizeof *report);
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
-    ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count, limits}, limits, error);
-    if (!status) conclude(run, report, &child, limits);
+    ck_Limits own = *limits;
+    if (limits->patience > 0) own.seconds = fmin(limits->seconds, WAIT_OF_PATIENCE * limits->patience);
+    ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count, &own}, &own, error);
+    if (!status) conclude(run, report, &child, &own, limits->seconds);
     ck_shared_free(report, sizeof *report);
     return status;
 }
@@ -195,6 +234,27 @@ static double quantile(const ck_Timing *timing, double share) {
 
 double ck_timing_median(const ck_Timing *timing) {
     return quantile(timing, 0.5);
+}
+
+void ck_timing_interval(const ck_Timing *timing, double *low, double *high) {
+    double sorted[CK_MAX_REPEATS];
+    memcpy(sorted, timing->cpu, sizeof *sorted * (size_t)timing->repeat_count);
+    ck_median_interval(sorted, timing->repeat_count, low, high);
+}
+
+// Timing ends when its interval is this narrow, of the median, or when enough is spent; but where repeats are short not
+// before so many. Source: Criterion and hyperfine do alike.
+#define NARROW 0.02
+#define FEWEST 5
+
+bool ck_timing_is_known(const ck_Timing *timing, double enough) {
+    double spent = 0, low, high;
+    for (int i = 0; i < timing->repeat_count; i++) spent += timing->cpu[i];
+    if (!timing->repeat_count) return false;
+    if (timing->repeat_count < FEWEST && spent * FEWEST / timing->repeat_count <= enough) return false;
+    ck_timing_interval(timing, &low, &high);
+    return spent >= enough || timing->repeat_count == CK_MAX_REPEATS ||
+           (timing->repeat_count > FEWEST && high - low <= NARROW * ck_timing_median(timing));
 }
 
 double ck_timing_iqr(const ck_Timing *timing) {

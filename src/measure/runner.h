@@ -52,6 +52,15 @@ void ck_run_free(ck_Run *run);
 double ck_timing_median(const ck_Timing *timing);
 double ck_timing_iqr(const ck_Timing *timing);
 
+// Between these the median lies with 95 %, by order statistics; the least and the most where repeats are fewer than
+// six.
+void ck_timing_interval(const ck_Timing *timing, double *low, double *high);
+
+// True where another repeat would not say more: the interval is within 2 % of the median, or enough is spent, s.
+bool ck_timing_is_known(const ck_Timing *timing, double enough);
+// What is enough where nobody says.
+#define CK_TIMING_ENOUGH 1.0
+
 // Judges a run that reached its end: blow-ups stay finite in some engines, and are then seen by energy and strain.
 
 // Replaces an ok status by unsettled, overstretched or energy_gain where the path says so, and gives the reason.

@@ -29,7 +29,9 @@ ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Referenc
     if (has_path) {
         measure(trial, &run, truth, against);
         trial->cpu = run.measured_cpu;
-        for (int i = 0; i < repeats && !status; i++) status = ck_run_time(&run, INFINITY, limits, error);
+        int most = repeats < 0 ? CK_MAX_REPEATS : repeats;
+        for (int i = 0; i < most && !status && (repeats > 0 || !ck_timing_is_known(&run.timing, CK_TIMING_ENOUGH)); i++)
+            status = ck_run_time(&run, INFINITY, limits, error);
     }
     if (run.timing.repeat_count) {
         trial->cpu = ck_timing_median(&run.timing);

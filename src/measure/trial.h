@@ -16,7 +16,8 @@ typedef struct ck_Trial {
     double cpu, cpu_range; // s, median and interquartile range
 } ck_Trial;
 
-// Runs and judges; times it repeats times, 0: the measured pass alone. What a failed run lacks is NaN.
+// Runs and judges; times it repeats times, 0: the measured pass alone, below 0: until it is
+// known. What a failed run lacks is NaN.
 //   against  NULL, or positions to measure error against in place of the truth's, of the same model's frames
 // Errors: CK_NO_MEMORY, CK_IO.
 ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Reference *truth, const ck_Trajectory *against,

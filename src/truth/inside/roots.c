@@ -1,6 +1,7 @@
 #include "roots.h"
 
 #include "equilibrium.h"
+#include "process.h"
 #include "rest_forms.h"
 #include "runge_kutta.h"
 #include "time_scale.h"
@@ -40,32 +41,63 @@ static ck_Status add_position(ck_Truth *truth, const ck_Model *model, const doub
 
 // Where the reference integrator stands when the scene ends: what is left of the motion by then is no engine's error,
 // and a scene that cannot be told from rest no better than that has that uncertainty.
-static ck_Status add_end_of_release(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
+static ck_Status integrate_release(ck_Trajectory *release, const ck_Model *model, ck_Error *error) {
     double frequency;
-    ck_Trajectory release = {0};
     ck_Status status = ck_stability_frequency(model, &frequency);
     // damping narrows the stable range of 2.78/ω
     double limit = 1 / (frequency + frequency * frequency * ck_stability_damping_time(model) + model->drag);
-    if (!status)
-        status = ck_reference_integrate(&release, model, (int)ck_stability_substeps(model, limit), 0, 0, error);
-    if (!status && release.frame_count > model->frame_count)
-        status = add_position(truth, model, ck_trajectory_position(&release, model->frame_count), error);
-    ck_trajectory_free(&release);
-    return status;
+    if (status) return status;
+    return ck_reference_integrate(release, model, (int)ck_stability_substeps(model, limit), 0, 0, error);
 }
 
-// The release as it is, then nudged. Those that end on a saddle are left out: they are no rest position.
+// The release as it is, then nudged; and at last its motion.
+typedef struct Starts {
+    const ck_Model *model;
+    ck_Equilibrium found[STARTS];
+    ck_Status status[STARTS];
+    ck_Error why[STARTS];
+    ck_Trajectory release;
+} Starts;
+
+static ck_Status solve_start(void *context, int index, ck_Error *error) {
+    Starts *starts = context;
+    const ck_Model *model = starts->model;
+    // the longest first
+    if (index == 0) return integrate_release(&starts->release, model, error);
+    int seed = index - 1;
+    starts->status[seed] = ck_equilibrium_release(&starts->found[seed], model, seed ? NUDGE * model->spacing : 0,
+                                                  (uint64_t)seed, &starts->why[seed]);
+    return starts->status[seed] == CK_NO_MEMORY ? ck_fail(error, CK_NO_MEMORY, "%s", starts->why[seed].message) : CK_OK;
+}
+
+// Those that end on a saddle are left out: they are no rest position.
 ck_Status ck_truth_solve_equilibrium(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
-    ck_Status status = CK_OK, found = CK_OK;
-    for (uint64_t seed = 0; seed < STARTS && !status; seed++) {
-        ck_Equilibrium equilibrium;
-        found = ck_equilibrium_release(&equilibrium, model, seed ? NUDGE * model->spacing : 0, seed, error);
-        if (!found) status = add_position(truth, model, equilibrium.position, error);
-        if (found == CK_NO_MEMORY) status = found;
-        ck_equilibrium_free(&equilibrium);
+    Starts starts = {.model = model};
+    ck_Status status = ck_parallel(STARTS + 1, 0, solve_start, &starts, error);
+    for (int seed = 0; seed < STARTS && !status; seed++) {
+        if (!starts.status[seed])
+            status = add_position(truth, model, starts.found[seed].position, error);
+        else if (error)
+            *error = starts.why[seed];
     }
-    if (!status && !truth->path_count) return CK_REFUSED;
-    return status ? status : add_end_of_release(truth, model, error);
+    bool is_none = !status && !truth->path_count;
+    if (!status && !is_none && starts.release.frame_count > model->frame_count)
+        status = add_position(truth, model, ck_trajectory_position(&starts.release, model->frame_count), error);
+    for (int seed = 0; seed < STARTS; seed++) ck_equilibrium_free(&starts.found[seed]);
+    ck_trajectory_free(&starts.release);
+    return is_none ? CK_REFUSED : status;
+}
+
+typedef struct Ensemble {
+    const ck_Model *model;
+    ck_Trajectory *paths;
+    int substeps;
+} Ensemble;
+
+static ck_Status draw_path(void *context, int index, ck_Error *error) {
+    const Ensemble *ensemble = context;
+    return ck_reference_integrate(&ensemble->paths[index], ensemble->model, ensemble->substeps,
+                                  CK_REFERENCE_NUDGE * ensemble->model->size, (uint64_t)index + 1, error);
 }
 
 ck_Status ck_truth_solve_trajectory(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
@@ -80,9 +112,8 @@ ck_Status ck_truth_solve_trajectory(ck_Truth *truth, const ck_Model *model, ck_E
     truth->path_count = 2;
     truth->reference.horizon = path.horizon;
     // beyond the horizon two paths say little of how far any two are apart: more are drawn, all as good
-    for (uint64_t seed = 1; path.horizon < model->frame_count && truth->path_count < CK_TRUTH_MAX_PATHS && !status;
-         seed++)
-        status = ck_reference_integrate(&truth->paths[truth->path_count++], model, path.substeps / 2,
-                                        CK_REFERENCE_NUDGE * model->size, seed, error);
-    return status;
+    if (path.horizon >= model->frame_count) return CK_OK;
+    Ensemble ensemble = {model, truth->paths + 2, path.substeps / 2};
+    truth->path_count = CK_TRUTH_MAX_PATHS;
+    return ck_parallel(CK_TRUTH_MAX_PATHS - 2, 0, draw_path, &ensemble, error);
 }

@@ -1,0 +1,129 @@
+// The studies of a scene that run a list of cases.
+#include "needs.h"
+#include "precision.h"
+#include "stability_study.h"
+#include "studies.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static ck_Status run_precision(const ck_StudyCommand *command, ck_Error *error) {
+    ck_Precision precision;
+    ck_Csv csv = {0}, summary = {0};
+    ck_JournalRow *rows = NULL;
+    ck_Status status = ck_precision_create(&precision, command->comparison, &command->arguments->options, error);
+    const ck_Study study = ck_precision_study(&precision);
+    // it times its runs: side by side they would slow each other down
+    if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_PRECISION, error);
+    if (!status) status = ck_study_command_open(command, &summary, CK_PRECISION_SUMMARY, error);
+    if (!status) ck_precision_write(&precision, rows, &csv, &summary);
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) status = ck_csv_close(&summary, error);
+    if (!status) status = ck_print_precision(command->arguments->out, command->comparison->model.name, error);
+    if (!status) ck_study_command_done(command, &study, "precision.csv, precision_summary.csv");
+    ck_csv_discard(&csv);
+    ck_csv_discard(&summary);
+    free(rows);
+    ck_precision_free(&precision);
+    return status;
+}
+
+static int precision(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, CK_PRECISION, argc, argv, run_precision);
+}
+
+const ck_Command ck_command_precision = {
+    .name = "precision",
+    .arguments = "SCENE",
+    .about = "error against cost over time steps and iterations: precision.csv",
+    .help = "Runs every engine over time steps from an eighth to sixteen times as many substeps as its rule takes, and "
+            "over\niterations; writes precision.csv with error, cost and the Pareto front, and precision_summary.csv "
+            "with orders,\nfloors and the cost to reach 10, 1 and 0.1 %.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .out = "out",
+    .seconds = 3,
+    .full_seconds = 20,
+    .run = precision,
+};
+
+static ck_Status run_stability(const ck_StudyCommand *command, ck_Error *error) {
+    ck_StabilityMap map;
+    ck_Csv csv = {0};
+    ck_JournalRow *rows = NULL;
+    ck_Status status = ck_stability_map_create(&map, command->comparison, &command->arguments->options, error);
+    const ck_Study study = ck_stability_map_study(&map);
+    if (!status) status = ck_study_command_run(command, &study, 0, &rows, error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_STABILITY, error);
+    if (!status) ck_stability_map_write(&map, rows, &csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) status = ck_print_stability(command->arguments->out, command->comparison->model.name, error);
+    if (!status) ck_study_command_done(command, &study, "stability.csv");
+    ck_csv_discard(&csv);
+    free(rows);
+    ck_stability_map_free(&map);
+    return status;
+}
+
+static int stability(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, CK_STABILITY, argc, argv, run_stability);
+}
+
+const ck_Command ck_command_stability = {
+    .name = "stability",
+    .arguments = "SCENE",
+    .about = "where methods fail: time step against stiffness: stability.csv",
+    .help = "Pushes the scene's rest and steps it: a map over time steps, stiffnesses and iterations, and the critical "
+            "step by\nbisection to 1 % beside what theory says; writes stability.csv.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .out = "out",
+    .seconds = 10,
+    .run = stability,
+};
+
+// The engine that is asked for, else the first that models all there is.
+static const ck_Engine *choose_engine(const ck_StudyCommand *command) {
+    const ck_CompareOptions *options = &command->arguments->options;
+    for (int i = 0; i < options->engine_count; i++)
+        if (!ck_engine_lacks(options->engines[i], &command->comparison->model)) return options->engines[i];
+    return options->engines[0];
+}
+
+static ck_Status run_needs(const ck_StudyCommand *command, ck_Error *error) {
+    const ck_Arguments *arguments = command->arguments;
+    ck_Needs needs;
+    ck_Csv csv = {0};
+    ck_JournalRow *rows = NULL;
+    const ck_Engine *engine = choose_engine(command);
+    const ck_Settings given = ck_comparison_settings(engine, &command->comparison->scene, &arguments->options);
+    ck_Status status =
+        ck_needs_create(&needs, command->comparison, engine, isnan(arguments->error) ? 0.01 : arguments->error, &given,
+                        &arguments->options.limits, error);
+    const ck_Study study = ck_needs_study(&needs);
+    if (!status) status = ck_study_command_run(command, &study, 1, &rows, error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_NEEDS, error);
+    if (!status) ck_needs_write(&needs, rows, &csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) ck_study_command_done(command, &study, "needs.csv");
+    ck_csv_discard(&csv);
+    free(rows);
+    ck_needs_free(&needs);
+    return status;
+}
+
+static int needs(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, CK_NEEDS, argc, argv, run_needs);
+}
+
+const ck_Command ck_command_needs = {
+    .name = "needs",
+    .arguments = "SCENE",
+    .about = "what the scene needs to be modelled, and what not: needs.csv",
+    .help = "Leaves out one modelled term at a time, and every second particle, and says which of them change any "
+            "metric by\nmore than --error (default 0.01), and what each costs; writes needs.csv. The engine is the "
+            "first that models all\nthere is, or --engine.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR,
+    .out = "out",
+    .seconds = 60,
+    .run = needs,
+};
