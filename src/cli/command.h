@@ -53,6 +53,7 @@ typedef struct ck_Arguments {
     int rounds, largest;   // of bench
     char question[2048];   // what is asked, without the scene, where to and how fast; words between tabs
     double error;          // a tolerance; NAN: none
+    double timeout;        // s of a search; 0: any
     const ck_Engine *like; // NULL: none
     const char *varies[4]; // of --vary
     int vary_count;

@@ -41,6 +41,7 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
         .question = command->question,
         .given = ck_comparison_settings(arguments->engines[0], &command->comparison->scene, &arguments->options),
         .limits = arguments->options.limits,
+        .timeout = arguments->timeout > 0 ? arguments->timeout : INFINITY,
         .progress = show};
     ck_Status vary = read_varied(&options, arguments, error);
     if (vary) return vary;

@@ -54,7 +54,9 @@ static const Option table[] = {
     {"memory-limit", "MIB", 0, CK_TAKES_RUNS, OTHER, .fallback = "4096", .read = set_memory,
      .help = "memory that one run may take"},
     {"repeats", "N", 'r', CK_TAKES_TIMING, COUNT, PLACE(options.repeats), 0, CK_MAX_REPEATS,
-     .fallback = "until the median is known to 2 %, or a second is spent", .help = "timed repeats, 0 to 99"},
+     .fallback = "until the median is known to 2 %, or --enough", .help = "timed repeats, 0 to 99"},
+    {"enough", "S", 0, CK_TAKES_TIMING, NUMBER, PLACE(options.enough), 0, 1e6, .fallback = "1",
+     .help = "wall seconds for all repeats of an engine, where --repeats does not say how many"},
     {"patience", "S", 'p', CK_TAKES_PATIENCE, NUMBER, PLACE(options.limits.patience), 0, 1e9,
      .help = "CPU seconds that a whole run may cost, or it is cut and scored as far as it came; 0: any"},
     {"full", NULL, 0, CK_TAKES_TIMING, OTHER, .read = set_full,
@@ -71,6 +73,8 @@ static const Option table[] = {
      .help = "run nothing: write what the journal in --out holds, or fail"},
     {"error", "X", 0, CK_TAKES_GOAL | CK_TAKES_ERROR, NUMBER, PLACE(error), 0, 1e6,
      .help = "a tolerance, in units of size"},
+    {"timeout", "S", 0, CK_TAKES_GOAL, NUMBER, PLACE(timeout), 0, 1e9, .fallback = "60",
+     .help = "wall seconds for the whole search; 0: any"},
     {"like", "ENGINE", 0, CK_TAKES_GOAL, OTHER, .read = read_like,
      .help = "come close to that engine's path instead of the truth"},
     {"vary", "KEY", 0, CK_TAKES_GOAL, OTHER, .read = add_variable,
@@ -331,8 +335,12 @@ _Static_assert(OPTIONS < 'A', "the numbers of long options must not be letters")
 
 ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv,
                             ck_Error *error) {
-    *arguments = (ck_Arguments){
-        .options = ck_compare_options_default(), .error = NAN, .rounds = 7, .largest = 1024, .out = command->out};
+    *arguments = (ck_Arguments){.options = ck_compare_options_default(),
+                                .error = NAN,
+                                .timeout = 60,
+                                .rounds = 7,
+                                .largest = 1024,
+                                .out = command->out};
     arguments->options.overrides = arguments->overrides;
     arguments->command = command;
     arguments->options.limits.patience = command->patience;

@@ -2,6 +2,7 @@
 
 #include "files.h"
 #include "tables.h"
+#include "tune.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,6 +48,8 @@ int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, 
                              .kept = {arguments.out, &comparison, 1, &arguments.options, layout == CK_TUNE}};
     if (!status && !arguments.forces)
         status = ck_kept_check(&study.kept, &ck_layouts[layout], arguments.appends, &error);
+    // before anything that takes time
+    if (!status && layout == CK_TUNE && !arguments.like) status = ck_tune_check(&comparison, arguments.error, &error);
     if (!status) status = find_truth(&comparison, &arguments, &error);
     if (!status) {
         write_question(&study);

@@ -19,7 +19,7 @@ ck_CompareOptions ck_compare_options_default(void) {
         .repeats = CK_REPEAT_UNTIL_KNOWN,
         .budget = 0.5,
         .enough = CK_TIMING_ENOUGH,
-        .consistency_budget = 1,
+        .consistency_budget = 0.3,
         .seed = 1,
         .limits = ck_limits_default(),
     };

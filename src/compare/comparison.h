@@ -29,7 +29,7 @@ typedef struct ck_CompareOptions {
     int repeats;               // timed; 0: no timing; CK_REPEAT_UNTIL_KNOWN: as ck_timing_is_known says
     double consistency_budget; // s of CPU time that an engine's self-consistency may take; 0: not measured
     double budget;             // s of CPU time per timed repeat at most
-    double enough;             // s of CPU time for all repeats of an engine, where they end when it is known
+    double enough;             // s of wall time for all repeats of an engine, where they end when it is known
     int jobs;                  // that measure side by side; 0: one a core
     uint64_t seed;             // of the order in which engines are timed
     ck_Limits limits;
@@ -38,8 +38,8 @@ typedef struct ck_CompareOptions {
     void (*progress)(const char *scene, const char *engine, const char *doing);
 } ck_CompareOptions;
 
-// All engines of the table, timed until it is known, repeats of at most half a second, self-consistency up to 1 s, seed
-// 1, default limits.
+// All engines of the table, timed until it is known, repeats of at most half a second, self-consistency up to 0.3 s,
+// seed 1, default limits.
 ck_CompareOptions ck_compare_options_default(void);
 
 typedef struct ck_Comparison {

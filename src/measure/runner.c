@@ -208,11 +208,13 @@ ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Er
     Report *report = ck_shared_allocate(sizeof *report);
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
+    double start = ck_wall();
     ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames, limits}, limits, error);
     if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
         timing->cpu[timing->repeat_count++] = report->cpu;
         timing->worst_step = fmax(timing->worst_step, report->worst_step);
     }
+    timing->spent += ck_wall() - start;
     ck_shared_free(report, sizeof *report);
     return status;
 }
@@ -248,12 +250,11 @@ void ck_timing_interval(const ck_Timing *timing, double *low, double *high) {
 #define FEWEST 5
 
 bool ck_timing_is_known(const ck_Timing *timing, double enough) {
-    double spent = 0, low, high;
-    for (int i = 0; i < timing->repeat_count; i++) spent += timing->cpu[i];
+    double low, high;
     if (!timing->repeat_count) return false;
-    if (timing->repeat_count < FEWEST && spent * FEWEST / timing->repeat_count <= enough) return false;
+    if (timing->repeat_count < FEWEST && timing->spent * FEWEST / timing->repeat_count <= enough) return false;
     ck_timing_interval(timing, &low, &high);
-    return spent >= enough || timing->repeat_count == CK_MAX_REPEATS ||
+    return timing->spent >= enough || timing->repeat_count == CK_MAX_REPEATS ||
            (timing->repeat_count > FEWEST && high - low <= NARROW * ck_timing_median(timing));
 }
 

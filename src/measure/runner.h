@@ -16,6 +16,7 @@ typedef struct ck_Timing {
     double cpu[CK_MAX_REPEATS]; // s of the stepping thread, for those frames
     int repeat_count;
     double worst_step; // s of the slowest frame of any repeat
+    double spent;      // s of wall time for all repeats, with what starting them takes
 } ck_Timing;
 
 typedef struct ck_Run {
@@ -56,7 +57,8 @@ double ck_timing_iqr(const ck_Timing *timing);
 // six.
 void ck_timing_interval(const ck_Timing *timing, double *low, double *high);
 
-// True where another repeat would not say more: the interval is within 2 % of the median, or enough is spent, s.
+// True where another repeat would not say more: the interval is within 2 % of the median, or enough is spent, s of wall
+// time.
 bool ck_timing_is_known(const ck_Timing *timing, double enough);
 // What is enough where nobody says.
 #define CK_TIMING_ENOUGH 1.0
@@ -65,6 +67,9 @@ bool ck_timing_is_known(const ck_Timing *timing, double enough);
 
 // Replaces an ok status by unsettled, overstretched or energy_gain where the path says so, and gives the reason.
 void ck_verdict(ck_Run *run, const ck_Reference *reference);
+
+// The time, s, in which drag takes a swing to where a body counts as settled; INFINITY without drag.
+double ck_settling_time(const ck_Model *model);
 
 // The measured pass and its verdict. An engine whose own rule chose a step that blows up steps finer, by halves, at
 // most three times, and the reason says so. Arguments and errors are those of ck_run_measure.

@@ -27,10 +27,14 @@ static void judge(ck_Run *run, ck_RunStatus status, const char *format, ...) {
 // A scene settles to a thousandth of its speed, ck_metric_still_speed: so many times drag's time of 2/drag.
 #define SETTLING_TIMES 6.9
 
+double ck_settling_time(const ck_Model *model) {
+    return model->drag > 0 ? SETTLING_TIMES * 2 / model->drag : INFINITY;
+}
+
 // Why a scene may not come to rest in its duration, whoever steps it; empty where that is not known. Along springs c
 // damps, too, but not the swinging across them.
 static const char *reason_to_move(const ck_Model *model, char *text, size_t size) {
-    double needed = model->drag > 0 ? SETTLING_TIMES * 2 / model->drag : INFINITY;
+    double needed = ck_settling_time(model);
     text[0] = 0;
     if (!(model->terms & (CK_TERM_DRAG | CK_TERM_DAMPING)) && !model->collider_count)
         snprintf(text, size, ": the scene has neither drag nor spring damping, and cannot settle");

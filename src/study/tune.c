@@ -1,5 +1,6 @@
 #include "tune.h"
 
+#include "process.h"
 #include "tune_grid.h"
 
 #include <math.h>
@@ -41,6 +42,8 @@ typedef struct Search {
     ck_JournalRow kept[MOST_POINTS]; // of the journal
     char kept_keys[MOST_POINTS][256];
     int kept_count;
+    double deadline; // of ck_wall
+    bool is_late;
     ck_Status status;
     ck_Error *error;
 } Search;
@@ -129,7 +132,10 @@ static ck_Status evaluate(Search *search, ck_TunePoint *point, const char *key) 
         return CK_OK;
     }
     const ck_Run *like = search->options->like ? &search->like : NULL;
-    ck_Status status = try_on(point, search->comparison, like, search->options, search->error);
+    // no run outlasts the search
+    ck_TuneOptions options = *search->options;
+    options.limits.seconds = fmin(options.limits.seconds, fmax(1, search->deadline - ck_wall()));
+    ck_Status status = try_on(point, search->comparison, like, &options, search->error);
     if (status) return status;
     const ck_Trial *trial = &point->trial;
     ck_JournalRow row = {.status = (int)trial->status};
@@ -180,7 +186,8 @@ static int try_point(Search *search, ck_TunePoint *point) {
     write_key(key, sizeof key, search->options->engine, point);
     for (int i = 0; i < search->point_count; i++)
         if (!strcmp(search->keys[i], key)) return i;
-    if (search->status || search->point_count == MOST_POINTS) return -1;
+    search->is_late |= ck_wall() > search->deadline;
+    if (search->status || search->is_late || search->point_count == MOST_POINTS) return -1;
     search->status = evaluate(search, point, key);
     if (search->status) return -1;
     split_errors(point, &search->comparison->truth, search->options->like != NULL);
@@ -242,6 +249,40 @@ static void search_grid(Search *search, ck_Tuning *tuning) {
     ck_tune_grid_refine(&grid);
     grid.most_tries = grid.tries + EXHAUSTING;
     tuning->is_cheapest = ck_tune_grid_exhaust(&grid) && !search->status;
+}
+
+// A pair of substeps and iterations, and its work in sweeps a frame.
+typedef struct Pair {
+    uint32_t substeps, iterations;
+    double work;
+} Pair;
+
+static int compare_pairs(const void *a, const void *b) {
+    const Pair *one = a, *other = b;
+    if (one->work != other->work) return one->work < other->work ? -1 : 1;
+    return (one->substeps < other->substeps) - (one->substeps > other->substeps);
+}
+
+#define MOST_POWERS 16
+
+// Powers of two of both, the cheapest first, until one meets the tolerance: what is dearer is not run.
+static void climb(Search *search) {
+    Pair pairs[MOST_POWERS * MOST_POWERS];
+    int count = 0;
+    double most_substeps = exp2(search->ranges[0].high),
+           most_iterations = search->automatic.iterations ? exp2(search->ranges[1].high) : 1;
+    for (uint32_t substeps = 1, i = 0; substeps <= most_substeps && i < MOST_POWERS; substeps *= 2, i++)
+        for (uint32_t iterations = 1, k = 0; iterations <= most_iterations && k < MOST_POWERS; iterations *= 2, k++)
+            pairs[count++] = (Pair){substeps, iterations, substeps * (1.0 + iterations)};
+    qsort(pairs, (size_t)count, sizeof *pairs, compare_pairs);
+    for (int i = 0; i < count && !search->status && !search->is_late; i++) {
+        ck_TunePoint point = {.settings = search->automatic, .stiffness = 1};
+        point.settings.substeps = pairs[i].substeps;
+        if (search->automatic.iterations) point.settings.iterations = pairs[i].iterations;
+        point.work = work_of(search, &point.settings);
+        int index = try_point(search, &point);
+        if (index >= 0 && meets(search, &search->points[index])) break;
+    }
 }
 
 static void add_range(Search *search, int variable, double low, double high) {
@@ -344,6 +385,19 @@ static ck_Status validate(const Search *search, const ck_Tuning *tuning, const c
     return status;
 }
 
+// What the reference has left of the release at the end of the scene is among the ends of a truth at rest.
+static ck_Status check_rest(const Search *search, ck_Error *error) {
+    const ck_Comparison *comparison = search->comparison;
+    double tolerance = search->options->tolerance,
+           left = ck_truth_uncertainty(&comparison->truth, &comparison->model, ck_metric_find("position_rms"));
+    if (!comparison->truth.reference.is_static || !(left > tolerance)) return CK_OK;
+    return ck_fail(
+        error, CK_BAD_INPUT,
+        "%s: the scene is still %.2g of its size from rest after %g s, so that no engine comes within %g of it; "
+        "take a longer time.duration, more drag, or truth: trajectory",
+        comparison->path, left, comparison->model.duration, tolerance);
+}
+
 static ck_Status prepare(Search *search, ck_Error *error) {
     const ck_TuneOptions *options = search->options;
     const ck_Model *model = &search->comparison->model;
@@ -354,7 +408,7 @@ static ck_Status prepare(Search *search, ck_Error *error) {
     ck_Status status = ck_engine_automatic(options->engine, model, &options->given, &search->automatic, error);
     if (status) return status;
     find_ranges(search);
-    if (!options->like) return CK_OK;
+    if (!options->like) return check_rest(search, error);
     status = ck_run_measure(&search->like, model, options->like, &(ck_Settings){0}, &options->limits, error);
     if (!status && !ck_run_has_all_frames(&search->like))
         status =
@@ -369,6 +423,7 @@ static ck_Status conclude(Search *search, ck_Tuning *tuning, ck_Error *error) {
                        search->point_count, options->engine->name);
     tuning->best = search->points[search->best];
     tuning->evaluations = search->point_count;
+    tuning->is_late = search->is_late;
     tuning->meets = isnan(options->tolerance) || meets(search, &tuning->best);
     name_bounds(search, tuning);
     add_row(search->csv, &search->comparison->model, options, "best", &tuning->best, tuning->bounds);
@@ -378,26 +433,51 @@ static ck_Status conclude(Search *search, ck_Tuning *tuning, ck_Error *error) {
     return status;
 }
 
+ck_Status ck_tune_check(const ck_Comparison *comparison, double tolerance, ck_Error *error) {
+    const ck_Model *model = &comparison->model;
+    const ck_TruthForm *form = model->truth ? ck_truth_form_find(model->truth) : NULL;
+    if (isnan(tolerance) || !form || !form->is_static || model->collider_count) return CK_OK;
+    if (!(model->terms & (CK_TERM_DRAG | CK_TERM_DAMPING)))
+        return ck_fail(error, CK_BAD_INPUT,
+                       "%s: without drag and spring damping the scene never comes to its rest, so that no engine comes "
+                       "within %g of it; give it drag, or truth: trajectory",
+                       comparison->path, tolerance);
+    // a cloth swings across its springs, which only drag damps
+    double needed = ck_settling_time(model);
+    if (model->body != CK_CLOTH || !(needed > model->duration) || isinf(needed)) return CK_OK;
+    return ck_fail(error, CK_BAD_INPUT,
+                   "%s: drag of %g/s takes some %.3g s to bring the scene to rest, and it has %g s: no engine settles; "
+                   "take time.duration of %.0f s, drag of %.2g/s, or truth: trajectory",
+                   comparison->path, model->drag, needed, model->duration, ceil(needed),
+                   model->drag * needed / model->duration);
+}
+
 ck_Status ck_tune_run(ck_Tuning *tuning, const ck_Comparison *comparison, const ck_TuneOptions *options, ck_Csv *csv,
                       ck_Error *error) {
     *tuning = (ck_Tuning){0};
     Search *search = calloc(1, sizeof *search);
     double x[CK_TUNE_VARIABLES];
     if (!search) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    *search =
-        (Search){.comparison = comparison, .options = options, .csv = csv, .journal = {.file = -1}, .error = error};
+    *search = (Search){.comparison = comparison,
+                       .options = options,
+                       .csv = csv,
+                       .journal = {.file = -1},
+                       .deadline = ck_wall() + options->timeout,
+                       .error = error};
     ck_Status status = prepare(search, error);
     if (!status)
         status = ck_journal_open(&search->journal, options->directory, "tune.journal", options->question, value_name,
                                  take_kept, search, error);
-    if (!status) {
+    bool climbs = !isnan(options->tolerance) && !options->varies_softness && !options->varies_stiffness;
+    if (!status && climbs) climb(search);
+    if (!status && !climbs) {
         // first what the engine's own rule sets, then everywhere, then around the best
         place(search, &(ck_TunePoint){.settings = search->automatic, .stiffness = 1}, x);
         objective((unsigned)search->range_count, x, NULL, search);
         status = search_with(search, NLOPT_GN_DIRECT_L, GLOBAL, x);
     }
-    if (!status && search->point_count) place(search, &search->points[search->best], x);
-    if (!status) status = search_with(search, NLOPT_LN_SBPLX, LOCAL, x);
+    if (!status && !climbs && search->point_count) place(search, &search->points[search->best], x);
+    if (!status && !climbs) status = search_with(search, NLOPT_LN_SBPLX, LOCAL, x);
     if (!status && !isnan(options->tolerance)) search_grid(search, tuning);
     if (!status) status = search->status;
     if (!status) status = conclude(search, tuning, error);
@@ -412,6 +492,9 @@ void ck_tune_print(const ck_Tuning *tuning, const ck_TuneOptions *options, const
     printf("# %s on %s: error %.3g, %.4g sweeps per simulated second, %d settings tried\n", options->engine->name,
            model->name, best->trial.error, best->work, tuning->evaluations);
     if (!tuning->meets) printf("# the tolerance of %g is not met\n", options->tolerance);
+    if (tuning->is_late)
+        printf("# the search ended after %g s; --timeout gives it longer, and what was tried is not run again\n",
+               options->timeout);
     if (tuning->is_cheapest) printf("# every cheaper pair of substeps and iterations was tried, and misses it\n");
     if (*tuning->bounds) printf("# %s\n", tuning->bounds);
     if (best->stiffness != 1) printf("# with stiffness, shear and bend of springs times %.6g\n", best->stiffness);

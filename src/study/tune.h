@@ -21,6 +21,7 @@ typedef struct ck_TuneOptions {
     const char *directory, *question, *cache; // of the journal and the truths of the scenes it is tried on
     ck_Settings given;                        // what the user sets of the engine
     ck_Limits limits;
+    double timeout;                                // s of wall time for the whole search; INFINITY: any
     void (*progress)(int evaluation, double best); // may be NULL
 } ck_TuneOptions;
 
@@ -38,11 +39,18 @@ typedef struct ck_Tuning {
     int evaluations;
     bool meets;       // the tolerance, where there is one
     bool is_cheapest; // all that would be cheaper was tried, and misses it
+    bool is_late;     // the search ended by its timeout
     char bounds[200]; // which variables ended at a bound; empty: none
 } ck_Tuning;
 
-// Searches with NLopt, deterministically, and adds a row an evaluation, one for the best and one a scene it is tried
-// on. Errors: CK_BAD_INPUT, CK_NO_MEMORY, CK_IO; CK_REFUSED where the engine does not take the scene.
+// Whether a goal can be reached by any engine, cheaply: a scene that cannot settle in its duration does not come within
+// an error of a truth at rest. Errors: CK_BAD_INPUT, which says what would help.
+ck_Status ck_tune_check(const ck_Comparison *comparison, double tolerance, ck_Error *error);
+
+// Searches deterministically: pairs of substeps and iterations from the cheapest on until one is within the tolerance,
+// and all that is cheaper; or, without a tolerance or with more to vary, with NLopt, and adds a row an evaluation, one
+// for the best and one a scene it is tried on. Errors: CK_BAD_INPUT, CK_NO_MEMORY, CK_IO; CK_REFUSED where the engine
+// does not take the scene.
 ck_Status ck_tune_run(ck_Tuning *tuning, const ck_Comparison *comparison, const ck_TuneOptions *options, ck_Csv *csv,
                       ck_Error *error);
 

@@ -194,6 +194,107 @@ static void test_foreseen(void **state) {
     ck_comparison_free(&comparison);
 }
 
+// Of 20 s in frames of 20 ms a patience of 1 s sees a fifth of itself, and cuts the run; it keeps its frames, its cost
+// and the way to more. A single frame that outlasts the patience ends, too.
+static void test_patience(void **state) {
+    (void)state;
+    static const ck_Engine slow = ENGINE("slow", create, step_slowly), hung = ENGINE("hung", create, step_for_ever);
+    ck_Comparison comparison;
+    fixture_load_comparison(
+        &comparison, "name: long\nrope: {particles: 3, spacing: 0.1, mass: 1}\ntime: {duration: 100, step: 0.1}\n");
+    ck_Run run;
+    const ck_Limits limits = {.seconds = 60, .patience = 1}, less = {.seconds = 60, .patience = 0.1};
+    assert_int_equal(ck_run_measure(&run, &comparison.model, &slow, &(ck_Settings){0}, &limits, NULL), CK_OK);
+    assert_int_equal(run.status, CK_RUN_TOO_SLOW);
+    assert_true(run.trajectory.frame_count > 1 && run.trajectory.frame_count <= 12);
+    assert_int_equal(run.timing.frames, run.trajectory.frame_count - 1);
+    assert_true(run.timing.cpu[0] >= 0.2);
+    if (!strstr(run.reason, "s of CPU a simulated second, some 2")) fail_msg("%s", run.reason);
+    if (!strstr(run.reason, "--patience 3")) fail_msg("%s", run.reason);
+    ck_run_free(&run);
+    assert_int_equal(ck_run_measure(&run, &comparison.model, &hung, &(ck_Settings){0}, &less, NULL), CK_OK);
+    assert_int_equal(run.status, CK_RUN_TOO_SLOW);
+    if (!strstr(run.reason, "not one frame in 0.3 s")) fail_msg("%s", run.reason);
+    ck_run_free(&run);
+    ck_comparison_free(&comparison);
+}
+
+// A cut run is scored as far as it came where the truth moves, and not where the truth knows only the end.
+static void test_cut_scores(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "name: fall\nrope: {particles: 3, spacing: 0.1, mass: 1}\ngravity: [0, -9.81, 0]\n"
+        "time: {duration: 1, step: 0.1}\ntruth: free_fall\n",
+        "name: hang\nrope: {particles: 3, spacing: 0.1, mass: 1}\nsprings: {stiffness: 1000, damping: 1}\npins: "
+        "[first]\n"
+        "gravity: [0, -9.81, 0]\ntime: {duration: 1, step: 0.1}\ntruth: equilibrium\n"};
+    for (int i = 0; i < 2; i++) {
+        ck_Comparison comparison;
+        fixture_load_comparison(&comparison, texts[i]);
+        assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+        ck_Run run = {.model = &comparison.model, .engine = &engines[7], .status = CK_RUN_TOO_SLOW};
+        assert_int_equal(ck_trajectory_create(&run.trajectory, &comparison.model, NULL), CK_OK);
+        run.trajectory.frame_count = 4;
+        comparison.runs = calloc(1, sizeof run);
+        *comparison.runs = run;
+        ck_Model model;
+        ck_Reference reference;
+        assert_int_equal(ck_comparison_scores(&comparison, 0, &model, &reference), i == 0);
+        if (i == 0) {
+            assert_int_equal(model.frame_count, 3);
+            assert_near("duration", model.duration, 0.3, 1e-15);
+            assert_int_equal(reference.trajectory.frame_count, 4);
+        }
+        ck_trajectory_free(&run.trajectory);
+        free(comparison.runs);
+        comparison.runs = NULL;
+        ck_comparison_free(&comparison);
+    }
+}
+
+// Timing ends when the median's interval is narrow, when enough is spent, and not before five where repeats are short.
+static void test_timing(void **state) {
+    (void)state;
+    ck_Timing timing = {.frames = 1};
+    double low, high;
+    for (int i = 0; i < 40; i++) timing.cpu[i] = 0.001 * (1 + 0.0001 * (i % 5));
+    timing.repeat_count = 4;
+    timing.spent = 0.004;
+    assert_false(ck_timing_is_known(&timing, 1));
+    timing.repeat_count = 8;
+    assert_true(ck_timing_is_known(&timing, 1));
+    for (int i = 0; i < 40; i++) timing.cpu[i] = 0.001 * (1 + 0.2 * (i % 5));
+    assert_false(ck_timing_is_known(&timing, 1));
+    timing.spent = 0.01;
+    assert_true(ck_timing_is_known(&timing, 0.009));
+    // P(X <= 1) of ten throws is 1.1 %, P(X <= 2) 5.5 %: the second and the ninth hold the median with 97.9 %
+    for (int i = 0; i < 10; i++) timing.cpu[i] = 10 - i;
+    timing.repeat_count = 10;
+    ck_timing_interval(&timing, &low, &high);
+    assert_near("low", low, 2, 0);
+    assert_near("high", high, 9, 0);
+    timing.repeat_count = 5;
+    ck_timing_interval(&timing, &low, &high);
+    assert_near("least", low, 6, 0);
+    assert_near("most", high, 10, 0);
+}
+
+static ck_Status count_up(void *context, int index, ck_Error *error) {
+    ((int *)context)[index]++;
+    return index == 3 || index == 7 ? ck_fail(error, CK_IO, "number %d", index) : CK_OK;
+}
+
+// Each index once, whatever failed; the first failure is told.
+static void test_parallel(void **state) {
+    (void)state;
+    int counts[50] = {0};
+    ck_Error error = {0};
+    assert_int_equal(ck_parallel(50, 4, count_up, counts, &error), CK_IO);
+    assert_string_equal(error.message, "number 3");
+    for (int i = 0; i < 50; i++) assert_int_equal(counts[i], 1);
+    assert_int_equal(ck_parallel(0, 0, count_up, counts, NULL), CK_OK);
+}
+
 // A verdict is about motion: a blow-up that stays finite has more kinetic energy than there ever was; a spring that is
 // longer than its stiffness allows is told while it moves; a body that came to rest has an error, whatever its strain.
 static void test_verdict(void **state) {
@@ -272,8 +373,9 @@ static void test_quantiles(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_hostile_engines), cmocka_unit_test(test_foreseen),
-                                       cmocka_unit_test(test_threads_count), cmocka_unit_test(test_verdict),
-                                       cmocka_unit_test(test_quantiles)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hostile_engines), cmocka_unit_test(test_patience), cmocka_unit_test(test_cut_scores),
+        cmocka_unit_test(test_timing),          cmocka_unit_test(test_parallel), cmocka_unit_test(test_foreseen),
+        cmocka_unit_test(test_threads_count),   cmocka_unit_test(test_verdict),  cmocka_unit_test(test_quantiles)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

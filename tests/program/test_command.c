@@ -29,13 +29,13 @@ static void test_usage(void **state) {
         {"run rope_hanging --threads 0", 2, "--threads 0: it must be a whole number from 1 to 64"},
         {"run rope_hanging --threads 1.5", 2, "--threads 1.5: it must be a whole number from 1 to 64"},
         {"run rope_hanging --set seed-tecido.mended=0.5", 2, "seed-tecido.mended = 0.5: it must be a whole number"},
-        {"fly", 2, "there is no command fly; known are list"},
+        {"fly", 2, "there is no command fly; known are demo, list"},
         {"tun", 2, "there is no command tun; did you mean tune?"},
         {"help", 0, "clothcheck compare"},
         {"help tune", 0, "clothcheck tune SCENE [options]"},
         {"help fly", 2, "there is no command fly"},
         {"run -h", 0, "--engine NAME"},
-        {"precision --help", 0, "one run may take (default: 20)"},
+        {"precision --help", 0, "one run may take (default: 3)"},
         {"run", 2, "run takes one SCENE; none is given"},
         {"run --help", 0, "--engine NAME"},
         {"compare --help", 0, "--time-limit S"},
@@ -124,8 +124,8 @@ static void test_comparison_repeats(void **state) {
     static const char *const files[] = {"runs.csv",       "machine.csv", "metrics.csv",
                                         "deviations.csv", "ledger.csv",  "series.csv"};
     static const char *const headers[] = {
-        "scene,engine,status,reason,time_step_s,substeps,iterations,simulated_s,cpu_median_s,cpu_iqr_s,cpu_worst_step_"
-        "s,realtime_factor,peak_rss_bytes,"
+        "scene,engine,status,reason,time_step_s,substeps,iterations,simulated_s,cpu_median_s,cpu_iqr_s,cpu_low_s,"
+        "cpu_high_s,repeats,cpu_worst_step_s,realtime_factor,peak_rss_bytes,"
         "engine_version,method,command\n",
         "key,value\n",
         "scene,engine,metric,unit,value,truth,truth_kind,truth_uncertainty,error,predicted\n",
@@ -136,8 +136,8 @@ static void test_comparison_repeats(void **state) {
     for (int round = 0; round < 2; round++) {
         char arguments[300];
         snprintf(arguments, sizeof arguments,
-                 "compare free_fall oscillator rope_hanging --repeats %d --seed %d --out %s/%d", round, round + 1,
-                 fixture_directory, round);
+                 "compare free_fall oscillator rope_hanging --full --repeats %d --seed %d --out %s/%d", round,
+                 round + 1, fixture_directory, round);
         assert_int_equal(fixture_program(arguments), 0);
     }
     for (int i = 0; i < 6; i++) {

@@ -248,6 +248,21 @@ static void test_keeping(void **state) {
     free(text);
 }
 
+// Three scenes, an answer for those with a truth of their positions, and the page.
+static void test_demo(void **state) {
+    (void)state;
+    char arguments[200];
+    snprintf(arguments, sizeof arguments, "demo -e native-verlet -e bullet-pbd --out %s/demo", fixture_directory);
+    assert_int_equal(fixture_program(arguments), 0);
+    fixture_assert_output("=> rope_hanging: the cheapest within 1 % of the truth is ");
+    fixture_assert_output("=> cloth_two_corners: the cheapest within 1 % of the truth is ");
+    fixture_assert_output("=> cloth_on_sphere: no truth knows its positions");
+    fixture_assert_output("demo/index.html");
+    char *page = fixture_read("demo/index.html");
+    assert_non_null(page);
+    free(page);
+}
+
 // Every engine that takes a rope is timed on it.
 static void test_bench(void **state) {
     (void)state;
@@ -263,10 +278,10 @@ static void test_bench(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),     cmocka_unit_test(test_shards),
-        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical), cmocka_unit_test(test_needs),
-        cmocka_unit_test(test_bench),       cmocka_unit_test(test_half),     cmocka_unit_test(test_keeping),
-        cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),      cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),  cmocka_unit_test(test_needs),
+        cmocka_unit_test(test_bench),       cmocka_unit_test(test_demo),      cmocka_unit_test(test_half),
+        cmocka_unit_test(test_keeping),     cmocka_unit_test(test_precision),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

@@ -4,6 +4,8 @@
 
 #include "tune_grid.h"
 
+#include <unistd.h>
+
 typedef struct Landscape {
     double (*error)(uint32_t substeps, uint32_t iterations, int variant);
     double tolerance;
@@ -141,10 +143,36 @@ static void test_refused(void **state) {
     assert_int_equal(fixture_program(arguments), 2);
 }
 
+// A goal that no engine can reach is refused before anything takes time, with what would help.
+static void test_unreachable(void **state) {
+    (void)state;
+    static const struct {
+        const char *terms, *wanted;
+    } cases[] = {
+        {"drag: 0.5\ntime: {duration: 2, fps: 60}",
+         "drag of 0.5/s takes some 27.6 s to bring the scene to rest, and it has 2 s"},
+        {"time: {duration: 2, fps: 60}", "without drag and spring damping the scene never comes to its rest"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[600], arguments[300];
+        snprintf(text, sizeof text,
+                 "name: cape\ncloth: {rows: 6, columns: 4, spacing: 0.1, mass: 0.3, down: [0, 0, 1]}\nsprings: "
+                 "{stiffness: 800, shear: 400}\npins: [top_edge]\ngravity: [0, -9.81, 0]\ntruth: equilibrium\n%s\n",
+                 cases[i].terms);
+        char *path = fixture_file(text);
+        snprintf(arguments, sizeof arguments, "tune %s -e bullet-pbd --error 0.01 --out %s/cape", path,
+                 fixture_directory);
+        assert_int_equal(fixture_program(arguments), 2);
+        fixture_assert_output(cases[i].wanted);
+        unlink(path);
+        free(path);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_grid),    cmocka_unit_test(test_lucky),   cmocka_unit_test(test_no_iterations),
-        cmocka_unit_test(test_program), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_program), cmocka_unit_test(test_refused), cmocka_unit_test(test_unreachable),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
