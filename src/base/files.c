@@ -61,3 +61,31 @@ int ck_path_make(const char *directory) {
     }
     return mkdir(path, 0777) && errno != EEXIST ? errno : 0;
 }
+
+ck_Status ck_whole_file_open(ck_WholeFile *whole, const char *directory, const char *name, ck_Error *error) {
+    *whole = (ck_WholeFile){.path = ck_path_join(directory, name), .part = ck_path_part(directory, name)};
+    if (!whole->path || !whole->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
+    int failed = ck_path_make(directory);
+    if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
+    whole->file = fopen(whole->part, "wb");
+    return whole->file ? CK_OK : ck_fail(error, CK_IO, "%s: %s", whole->part, strerror(errno));
+}
+
+ck_Status ck_whole_file_close(ck_WholeFile *whole, ck_Error *error) {
+    int failed = fflush(whole->file) || ferror(whole->file) || fsync(fileno(whole->file));
+    failed |= fclose(whole->file);
+    whole->file = NULL;
+    if (!failed) failed = rename(whole->part, whole->path);
+    ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", whole->path, strerror(errno)) : CK_OK;
+    if (failed) unlink(whole->part);
+    ck_whole_file_discard(whole);
+    return status;
+}
+
+void ck_whole_file_discard(ck_WholeFile *whole) {
+    if (whole->file) fclose(whole->file);
+    if (whole->file) unlink(whole->part);
+    free(whole->path);
+    free(whole->part);
+    *whole = (ck_WholeFile){0};
+}

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 // Reads a whole file, and a zero after it. Errors: CK_IO, CK_NO_MEMORY. Free *bytes in any case.
 ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *error);
@@ -37,5 +38,21 @@ static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
     for (size_t i = 0; i < bytes; i++) start = (start ^ byte[i]) * 0x100000001b3u;
     return start;
 }
+
+// A file that appears whole or not at all: written beside its name, then renamed.
+typedef struct ck_WholeFile {
+    FILE *file;        // to write to
+    char *path, *part; // the name it gets, and the one it is written under
+} ck_WholeFile;
+
+// Starts directory/name; the directory is made where it is missing. Errors: CK_IO, CK_NO_MEMORY. End with
+// ck_whole_file_close or ck_whole_file_discard in any case.
+ck_Status ck_whole_file_open(ck_WholeFile *whole, const char *directory, const char *name, ck_Error *error);
+
+// Gives the file its name, once it is on the disk. Errors: CK_IO, and then there is no file.
+ck_Status ck_whole_file_close(ck_WholeFile *whole, ck_Error *error);
+
+// Leaves nothing behind. Accepts a zeroed or closed one.
+void ck_whole_file_discard(ck_WholeFile *whole);
 
 #endif

@@ -1,5 +1,5 @@
-// Work in a child process with limits, so that a crash, a hang or a flood of memory costs the caller nothing but a
-// result.
+// Work in child processes with limits, so that a crash, a hang or a flood of memory costs the caller nothing but a
+// result; work in threads; clocks; and the line that says how far it has come.
 #ifndef CK_PROCESS_H
 #define CK_PROCESS_H
 
@@ -72,5 +72,13 @@ static inline double ck_wall(void) {
     clock_gettime(CLOCK_MONOTONIC, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
+
+// One line on the terminal that says how far a long command has come.
+
+// Writes the line over the last one, on stderr; nothing where that is no terminal.
+void ck_progress_show(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+// Takes the line away.
+void ck_progress_clear(void);
 
 #endif

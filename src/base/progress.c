@@ -1,4 +1,4 @@
-#include "progress.h"
+#include "process.h"
 
 #include <stdarg.h>
 #include <stdbool.h>

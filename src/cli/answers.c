@@ -135,3 +135,29 @@ ck_Status ck_print_stability(const char *directory, const char *scene, ck_Error 
     ck_csv_table_free(&table);
     return status;
 }
+
+ck_Status ck_print_bench(const char *directory, ck_Error *error) {
+    ck_CsvTable table = {0};
+    ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_BENCH], error);
+    if (!status) printf("%-8s %9s  %-16s %-28s %s\n", "body", "particles", "engine", "set-up", "ns a spring");
+    for (int i = 0; i < table.row_count && !status; i++) {
+        double value = number(&table, i, "value");
+        if (strcmp(text(&table, i, "metric"), "update_time") || isnan(value)) continue;
+        printf("%-8s %9.0f  %-16s %-28s %.3g\n", text(&table, i, "body"), number(&table, i, "particles"),
+               text(&table, i, "engine"), text(&table, i, "setup"), value);
+    }
+    ck_csv_table_free(&table);
+    return status;
+}
+
+ck_Status ck_print_quirks(const char *directory, ck_Error *error) {
+    ck_CsvTable table = {0};
+    ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_QUIRKS], error);
+    if (!status) printf("%-12s %-40s %-18s %11s %11s %11s\n", "engine", "quirk", "", "as it was", "mended", "physics");
+    for (int i = 0; i < table.row_count && !status; i++)
+        printf("%-12s %-40.40s %-18.18s %11.4g %11.4g %11.4g\n", text(&table, i, "engine"), text(&table, i, "quirk"),
+               text(&table, i, "metric"), number(&table, i, "as_it_was"), number(&table, i, "mended"),
+               number(&table, i, "physics"));
+    ck_csv_table_free(&table);
+    return status;
+}

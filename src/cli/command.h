@@ -113,6 +113,8 @@ void ck_print_answer(const ck_Comparison *comparison);
 // Print what a study of a scene came to, of the CSVs in a directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
 ck_Status ck_print_precision(const char *directory, const char *scene, ck_Error *error);
 ck_Status ck_print_stability(const char *directory, const char *scene, ck_Error *error);
+ck_Status ck_print_bench(const char *directory, ck_Error *error);
+ck_Status ck_print_quirks(const char *directory, ck_Error *error);
 
 // Asks for signals to end what runs, so that whole files or none are left.
 void ck_command_catch_signals(void);

@@ -1,7 +1,7 @@
 #include "bench.h"
 #include "command.h"
 #include "files.h"
-#include "progress.h"
+#include "process.h"
 #include "tables.h"
 
 #include <stdio.h>
@@ -28,7 +28,8 @@ static int run(const ck_Command *command, int argc, char **argv) {
     if (!status) status = ck_csv_close(&csv, &error);
     if (!status) status = ck_machine_save(out, &error);
     ck_csv_discard(&csv);
-    if (!status) printf("CSV: %s/bench.csv\n", out);
+    if (!status) status = ck_print_bench(out, &error);
+    if (!status) printf("CSV: %s/bench.csv\nNext: clothcheck report %s\n", out, out);
     ck_arguments_free(&arguments);
     return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
 }

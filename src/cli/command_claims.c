@@ -1,7 +1,7 @@
 #include "claims.h"
 #include "command.h"
 #include "files.h"
-#include "progress.h"
+#include "process.h"
 #include "tables.h"
 
 #include <stdio.h>
@@ -35,7 +35,8 @@ static int run(const ck_Command *command, int argc, char **argv) {
     const char *out = arguments.out;
     if (!status) status = write_tables(out, &error);
     if (!status) status = ck_machine_save(out, &error);
-    if (!status) printf("CSVs: %s\n", out);
+    if (!status) status = ck_print_quirks(out, &error);
+    if (!status) printf("CSVs: %s/{claims.csv, quirks.csv}\n", out);
     ck_arguments_free(&arguments);
     return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
 }

@@ -33,7 +33,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
     if (result == CK_EXIT_OK)
         printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second "
-               "(median).\nCSVs: %s\nNext: clothcheck report %s\n",
+               "(median), ms/frame that of 1/60 s.\nCSVs: %s\nNext: clothcheck report %s\n",
                arguments.out, arguments.out);
     ck_arguments_free(&arguments);
     return result;

@@ -31,6 +31,8 @@ static int run(const ck_Command *command, int argc, char **argv) {
     // it is only written to CSVs
     if (!arguments.out) arguments.options.consistency_budget = 0;
     int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
+    if (result == CK_EXIT_OK)
+        printf("\nNext: clothcheck compare %s --out out, then clothcheck report out\n", arguments.scenes[0]);
     ck_arguments_free(&arguments);
     return result;
 }

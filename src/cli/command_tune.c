@@ -1,5 +1,5 @@
 #include "files.h"
-#include "progress.h"
+#include "process.h"
 #include "studies.h"
 #include "tune.h"
 
@@ -55,7 +55,13 @@ static ck_Status run(const ck_StudyCommand *command, ck_Error *error) {
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) {
         ck_tune_print(&tuning, &options, &command->comparison->model);
-        printf("CSV: %s/tune.csv\n", arguments->out);
+        printf("CSV: %s/tune.csv\nNext: clothcheck run %s --engine %s", arguments->out, command->comparison->path,
+               options.engine->name);
+        for (const ck_Setting *row = options.engine->settings; row && row->name; row++)
+            if (ck_settings_has(&tuning.best.settings, row->slot))
+                printf(" --set %s.%s=%.9g", options.engine->name, row->name,
+                       ck_settings_get(&tuning.best.settings, row->slot));
+        printf("\n");
     }
     ck_csv_discard(&csv);
     free(cache);

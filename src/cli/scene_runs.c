@@ -1,6 +1,6 @@
 #include "command.h"
 #include "files.h"
-#include "progress.h"
+#include "process.h"
 #include "tables.h"
 
 #include <math.h>
@@ -86,31 +86,52 @@ static void print_number(const char *format, int width, double number) {
     printf(" %*s", width, text);
 }
 
+static double value_of(const char *metric, const ck_Run *run, const ck_Model *model, const ck_Reference *reference) {
+    return ck_metric_value(ck_metric_find(metric), model, &run->trajectory, reference);
+}
+
 static void print_engine(const ck_Comparison *comparison, int index) {
     const ck_Run *run = &comparison->runs[index];
-    double sag = NAN, sag_error = NAN, distance = NAN;
+    double sag = NAN, sag_error = NAN, distance = NAN, stretch = NAN;
     ck_Model model;
     ck_Reference reference;
     if (ck_comparison_scores(comparison, index, &model, &reference)) {
-        sag = ck_metric_value(ck_metric_find("sag"), &model, &run->trajectory, &reference);
+        sag = value_of("sag", run, &model, &reference);
         sag_error = fabs(sag - ck_metric_truth(ck_metric_find("sag"), &model, &reference));
-        distance = ck_metric_value(ck_metric_find("position_rms"), &model, &run->trajectory, &reference);
+        distance = value_of("position_rms", run, &model, &reference);
+        stretch = value_of("stretch_max", run, &model, &reference);
     }
-    double simulated = run->timing.frames * run->model->step;
+    double cost = 1e3 * ck_timing_median(&run->timing) / (run->timing.frames * run->model->step);
     printf("%-18s %-16s %-13s", run->model->name, run->engine->name, ck_run_status_names[run->status]);
     print_number("%.6f", 10, sag);
     print_number("%.1e", 9, sag_error);
     print_number("%.1e", 9, distance);
-    print_number("%.3g", 9, 1e3 * ck_timing_median(&run->timing) / simulated);
+    print_number("%.4f", 8, stretch);
+    print_number("%.3g", 9, cost);
+    print_number("%.3g", 9, cost / 60);
     printf("\n");
 }
 
-void ck_print_summary(const ck_Comparison *comparison) {
-    printf("%-18s %-16s %-13s %10s %9s %9s %9s\n", "scene", "engine", "status", "sag", "error", "rms error",
-           "ms CPU/s");
-    for (int i = 0; i < comparison->run_count; i++) print_engine(comparison, i);
-    // what is missing is said, in place of a column of dashes
+// How well the truth is known, or why there is none.
+static void print_truth(const ck_Comparison *comparison) {
     const ck_Truth *truth = &comparison->truth;
-    if (truth->form && !truth->path_count && !truth->reference.is_invariant) printf("  truth: %s\n", truth->kind);
+    if (!truth->form) return;
+    double known = ck_truth_uncertainty(truth, &comparison->model, ck_metric_find("position_rms"));
+    if (truth->path_count && !isnan(known))
+        printf("  truth: %s, known to %.1e of the size\n", truth->kind, known);
+    else if (!truth->path_count && !truth->reference.is_invariant)
+        printf("  truth: %s\n", truth->kind);
+}
+
+void ck_print_summary(const ck_Comparison *comparison) {
+    printf("%-18s %-16s %-13s %10s %9s %9s %8s %9s %9s\n", "scene", "engine", "status", "sag", "error", "rms error",
+           "stretch", "ms CPU/s", "ms/frame");
+    for (int i = 0; i < comparison->run_count; i++) print_engine(comparison, i);
+    print_truth(comparison);
+    for (int i = 0; i < comparison->run_count; i++) {
+        const ck_Run *run = &comparison->runs[i];
+        if (run->status != CK_RUN_OK && run->status != CK_RUN_UNSUPPORTED)
+            printf("  %s %s: %.140s\n", run->engine->name, ck_run_status_names[run->status], run->reason);
+    }
     fflush(stdout);
 }

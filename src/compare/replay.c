@@ -97,23 +97,14 @@ static void write_all(FILE *file, const ck_Comparison *comparison) {
 
 ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, ck_Error *error) {
     char *folder = ck_path_join(directory, CK_REPLAY_DIRECTORY), *name = ck_replay_name(comparison->model.name);
-    char *path = folder && name ? ck_path_join(folder, name) : NULL;
-    char *part = path ? ck_path_part(folder, name) : NULL;
-    ck_Status status = part ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    int failed = status ? 0 : ck_path_make(folder);
-    FILE *file = status || failed ? NULL : fopen(part, "wb");
-    if (!status && !file) status = ck_fail(error, CK_IO, "%s: %s", part, strerror(failed ? failed : errno));
-    if (file) {
-        write_all(file, comparison);
-        bool is_whole = !fflush(file) && !ferror(file);
-        is_whole &= !fclose(file);
-        if (!is_whole || rename(part, path)) {
-            status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
-            unlink(part);
-        }
+    ck_WholeFile whole = {0};
+    ck_Status status = folder && name ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_whole_file_open(&whole, folder, name, error);
+    if (!status) {
+        write_all(whole.file, comparison);
+        status = ck_whole_file_close(&whole, error);
     }
-    free(part);
-    free(path);
+    ck_whole_file_discard(&whole);
     free(name);
     free(folder);
     return status;

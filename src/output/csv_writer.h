@@ -2,15 +2,14 @@
 #ifndef CK_CSV_WRITER_H
 #define CK_CSV_WRITER_H
 
+#include "files.h"
 #include "layout.h"
 #include "status.h"
 
 #include <stdint.h>
-#include <stdio.h>
 
 typedef struct ck_Csv {
-    FILE *file;
-    char *path, *part; // the name it gets, and the one it is written under
+    ck_WholeFile whole;
     int column_count, column;
 } ck_Csv;
 

@@ -2,7 +2,6 @@
 
 #include "files.h"
 #include "process.h"
-#include "progress.h"
 
 #include <errno.h>
 #include <math.h>

@@ -102,9 +102,8 @@ bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *dir
 
 ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, const char *directory) {
     char name[40];
+    ck_WholeFile whole;
     name_of(name, sizeof name, model);
-    char *path = ck_path_join(directory, name), *part = ck_path_part(directory, name);
-    FILE *file = path && part && !ck_path_make(directory) ? fopen(part, "wb") : NULL;
     Header header = {.format = FORMAT,
                      .model = ck_truth_cache_hash(model),
                      .data = CK_HASH_START,
@@ -115,15 +114,13 @@ ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, cons
         header.frame_counts[i] = truth->paths[i].frame_count;
         header.data = ck_hash(header.data, truth->paths[i].data, path_bytes(model, truth->paths[i].frame_count));
     }
-    bool written = file && fwrite(&header, sizeof header, 1, file) == 1;
-    for (int i = 0; i < truth->path_count && written; i++) {
-        size_t bytes = path_bytes(model, truth->paths[i].frame_count);
-        written = fwrite(truth->paths[i].data, 1, bytes, file) == bytes;
+    ck_Status status = ck_whole_file_open(&whole, directory, name, NULL);
+    if (!status) {
+        fwrite(&header, sizeof header, 1, whole.file);
+        for (int i = 0; i < truth->path_count; i++)
+            fwrite(truth->paths[i].data, 1, path_bytes(model, truth->paths[i].frame_count), whole.file);
+        status = ck_whole_file_close(&whole, NULL);
     }
-    if (file) written &= !fclose(file);
-    if (written) written = !rename(part, path);
-    if (file && !written) unlink(part);
-    free(path);
-    free(part);
-    return written ? CK_OK : CK_IO;
+    ck_whole_file_discard(&whole);
+    return status;
 }
