@@ -1,6 +1,7 @@
 #include "names.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,7 +19,7 @@ static int letter(const char *text, int index) {
 // Letters to leave out, add, exchange or swap with their neighbour, each pair of neighbours once.
 static int distance(const char *a, const char *b) {
     int rows = (int)strlen(a), columns = (int)strlen(b), steps[MOST_LETTERS + 1][MOST_LETTERS + 1];
-    if (rows > MOST_LETTERS || columns > MOST_LETTERS) return MOST_LETTERS;
+    if (rows > MOST_LETTERS || columns > MOST_LETTERS) return INT_MAX;
     for (int i = 0; i <= rows; i++)
         for (int j = 0; j <= columns; j++) {
             steps[i][j] = i ? i : j;

@@ -180,7 +180,8 @@ ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int 
                       ck_Error *error) {
     Crew crew = {.count = count, .work = work, .context = context, .failed = count};
     pthread_t threads[MOST_THREADS];
-    int most = jobs > 0 ? jobs : (int)sysconf(_SC_NPROCESSORS_ONLN), started = 0;
+    // more than there are cores would only make each one wait
+    int cores = (int)sysconf(_SC_NPROCESSORS_ONLN), most = jobs > 0 && jobs < cores ? jobs : cores, started = 0;
     if (most > count) most = count;
     if (most > MOST_THREADS) most = MOST_THREADS;
     pthread_mutex_init(&crew.lock, NULL);

@@ -41,8 +41,8 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *context), void
                        ck_Error *error);
 
 // One thread a core at most, for work that does not share what it writes: work(context, index) of each index below
-// count, at most jobs at a time, in no order; jobs 0: one a core. work may start children. The first error of the
-// lowest index is returned; others go on to their end.
+// count, at most jobs at a time and one a core, in no order; jobs 0: one a core. work may start children. The first
+// error of the lowest index is returned; others go on to their end.
 ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int index, ck_Error *error), void *context,
                       ck_Error *error);
 

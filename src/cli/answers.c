@@ -42,6 +42,9 @@ void ck_print_answer(const ck_Comparison *comparison) {
         return;
     }
     int count = find_answers(comparison, answers);
+    int timed = 0;
+    for (int i = 0; i < comparison->run_count; i++) timed += comparison->runs[i].timing.repeat_count > 0;
+    if (!timed) return;
     if (!count) {
         printf("=> %s: no engine that was timed is within 1 %% of the truth; 'clothcheck precision' refines them\n",
                name);

@@ -73,7 +73,7 @@ static const Option table[] = {
      .help = "run nothing: write what the journal in --out holds, or fail"},
     {"error", "X", 0, CK_TAKES_GOAL | CK_TAKES_ERROR, NUMBER, PLACE(error), 0, 1e6,
      .help = "a tolerance, in units of size"},
-    {"timeout", "S", 0, CK_TAKES_GOAL, NUMBER, PLACE(timeout), 0, 1e9, .fallback = "60",
+    {"timeout", "S", 0, CK_TAKES_GOAL, NUMBER, PLACE(timeout), 0, 1e9, .fallback = "60", .is_way = true,
      .help = "wall seconds for the whole search; 0: any"},
     {"like", "ENGINE", 0, CK_TAKES_GOAL, OTHER, .read = read_like,
      .help = "come close to that engine's path instead of the truth"},
@@ -196,7 +196,9 @@ static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Erro
     const ck_Setting *setting = ck_setting_find(override->engine->settings, key);
     if (!setting) return fail_unknown_key(text, key, override->engine, error);
     double number = strtod(text + used, &end);
-    if (end == text + used || *end || !ck_setting_takes(setting, number, wanted, sizeof wanted))
+    bool is_taken = ck_setting_takes(setting, number, wanted, sizeof wanted);
+    // a scene may leave a setting to the rule by 0; here that would leave the scene's
+    if (end == text + used || *end || !is_taken || (number == 0 && setting->least > 0))
         return ck_fail(error, CK_BAD_INPUT, "--set %s.%s = %s: it must be %s", name, key, text + used, wanted);
     ck_settings_set(&override->settings, setting->slot, number);
     return CK_OK;
@@ -352,7 +354,11 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
     optind = 0; // start anew, whoever parsed before
     opterr = 0;
     for (int found; !status && (found = getopt_long(argc, argv, letters, options, NULL)) != -1;) {
-        if (found == '?' || found == ':') return fail_option(command, found, argv[optind - 1], error);
+        if (found == '?' || found == ':') {
+            char letter[3] = {'-', (char)optopt};
+            bool is_letter = optopt > ' ' && optopt < 127 && optopt >= OPTIONS;
+            return fail_option(command, found, is_letter ? letter : argv[optind - 1], error);
+        }
         const Option *option = option_of(found);
         status = read_option(arguments, option, optarg, error);
         if (!status && !option->is_way) status = add_to_question(arguments, option->name, optarg, error);

@@ -87,7 +87,9 @@ static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index)
         ck_csv_number(csv, truth);
         // where a truth was asked for and is not to be had, the kind says why
         ck_csv_text(csv, isnan(truth) && comparison->truth.path_count ? "" : comparison->truth.kind);
-        ck_csv_number(csv, ck_truth_uncertainty(&comparison->truth, model, metric));
+        // the paths whose spread it is end at the scene's end
+        bool is_whole = ck_comparison_has_path(comparison, index);
+        ck_csv_number(csv, is_whole ? ck_truth_uncertainty(&comparison->truth, model, metric) : NAN);
         ck_csv_number(csv, fabs(value - truth));
         // a path of one frame has no whole-run metrics
         bool foretold = prediction->trajectory.frame_count && (metric->at || !prediction->is_static);

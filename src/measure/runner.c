@@ -112,7 +112,7 @@ static const ck_RunStatus status_of_child[] = {
 };
 
 // A single frame may outlast the patience: so many times of it, in wall time, end it.
-#define WAIT_OF_PATIENCE 3
+#define WAIT_OF_PATIENCE 4
 
 // What ran is the only timing that such a run has.
 static void tell_too_slow(ck_Run *run, const Report *report, const ck_Limits *limits) {
@@ -200,7 +200,9 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
 
 ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error) {
     ck_Timing *timing = &run->timing;
-    if (run->trajectory.frame_count <= run->model->frame_count || timing->repeat_count == CK_MAX_REPEATS) return CK_OK;
+    if (run->trajectory.frame_count <= run->model->frame_count || timing->repeat_count == CK_MAX_REPEATS ||
+        timing->has_failed)
+        return CK_OK;
     if (!timing->frames) {
         double fits = run->measured_cpu > 0 ? budget / run->measured_cpu : 1;
         timing->frames = (int)fmax(1, floor(fmin(1, fits) * run->model->frame_count));
@@ -213,6 +215,8 @@ ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Er
     if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
         timing->cpu[timing->repeat_count++] = report->cpu;
         timing->worst_step = fmax(timing->worst_step, report->worst_step);
+    } else if (!status) {
+        timing->has_failed = true;
     }
     timing->spent += ck_wall() - start;
     ck_shared_free(report, sizeof *report);
@@ -251,6 +255,7 @@ void ck_timing_interval(const ck_Timing *timing, double *low, double *high) {
 
 bool ck_timing_is_known(const ck_Timing *timing, double enough) {
     double low, high;
+    if (timing->has_failed) return true;
     if (!timing->repeat_count) return false;
     if (timing->repeat_count < FEWEST && timing->spent * FEWEST / timing->repeat_count <= enough) return false;
     ck_timing_interval(timing, &low, &high);

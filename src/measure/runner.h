@@ -16,6 +16,7 @@ typedef struct ck_Timing {
     double cpu[CK_MAX_REPEATS]; // s of the stepping thread, for those frames
     int repeat_count;
     double worst_step; // s of the slowest frame of any repeat
+    bool has_failed;   // a repeat did not get to its end: the next would not, either
     double spent;      // s of wall time for all repeats, with what starting them takes
 } ck_Timing;
 

@@ -15,7 +15,9 @@
 #define LOCAL 60
 #define REFINING 240
 #define EXHAUSTING 800
-#define MOST_POINTS (GLOBAL + LOCAL + REFINING + EXHAUSTING + 1)
+// Powers of two of substeps and of iterations that a climb goes up to.
+#define MOST_POWERS 16
+#define MOST_POINTS (GLOBAL + LOCAL + REFINING + EXHAUSTING + MOST_POWERS * MOST_POWERS + 1)
 // A setting that fails, or misses the tolerance, counts as this much more work for each power of e.
 #define PENALTY 20
 #define FAILED 1e3
@@ -137,6 +139,10 @@ static ck_Status evaluate(Search *search, ck_TunePoint *point, const char *key) 
     options.limits.seconds = fmin(options.limits.seconds, fmax(1, search->deadline - ck_wall()));
     ck_Status status = try_on(point, search->comparison, like, &options, search->error);
     if (status) return status;
+    // cut by the end of the search, not by its own limit: nothing is known of it
+    search->is_late |=
+        point->trial.status == CK_RUN_TIMED_OUT && options.limits.seconds < search->options->limits.seconds;
+    if (search->is_late) return CK_OK;
     const ck_Trial *trial = &point->trial;
     ck_JournalRow row = {.status = (int)trial->status};
     for (int i = 0; i < CK_JOURNAL_VALUES; i++) row.values[i] = NAN;
@@ -189,7 +195,7 @@ static int try_point(Search *search, ck_TunePoint *point) {
     search->is_late |= ck_wall() > search->deadline;
     if (search->status || search->is_late || search->point_count == MOST_POINTS) return -1;
     search->status = evaluate(search, point, key);
-    if (search->status) return -1;
+    if (search->status || search->is_late) return -1;
     split_errors(point, &search->comparison->truth, search->options->like != NULL);
     int index = search->point_count++;
     memcpy(search->keys[index], key, sizeof key);
@@ -248,7 +254,7 @@ static void search_grid(Search *search, ck_Tuning *tuning) {
                         .context = search};
     ck_tune_grid_refine(&grid);
     grid.most_tries = grid.tries + EXHAUSTING;
-    tuning->is_cheapest = ck_tune_grid_exhaust(&grid) && !search->status;
+    tuning->is_cheapest = ck_tune_grid_exhaust(&grid) && !search->status && !search->is_late;
 }
 
 // A pair of substeps and iterations, and its work in sweeps a frame.
@@ -262,8 +268,6 @@ static int compare_pairs(const void *a, const void *b) {
     if (one->work != other->work) return one->work < other->work ? -1 : 1;
     return (one->substeps < other->substeps) - (one->substeps > other->substeps);
 }
-
-#define MOST_POWERS 16
 
 // Powers of two of both, the cheapest first, until one meets the tolerance: what is dearer is not run.
 static void climb(Search *search) {
@@ -419,8 +423,9 @@ static ck_Status prepare(Search *search, ck_Error *error) {
 static ck_Status conclude(Search *search, ck_Tuning *tuning, ck_Error *error) {
     const ck_TuneOptions *options = search->options;
     if (!search->point_count || search->values[search->best] >= FAILED)
-        return ck_fail(error, CK_REFUSED, "%s: none of %d settings of %s ran to its end", search->comparison->path,
-                       search->point_count, options->engine->name);
+        return ck_fail(error, CK_REFUSED, "%s: none of %d settings of %s ran to its end%s", search->comparison->path,
+                       search->point_count, options->engine->name,
+                       search->is_late ? " in time; --timeout gives it longer" : "");
     tuning->best = search->points[search->best];
     tuning->evaluations = search->point_count;
     tuning->is_late = search->is_late;
@@ -462,7 +467,8 @@ ck_Status ck_tune_run(ck_Tuning *tuning, const ck_Comparison *comparison, const 
     if (!status && !isnan(options->tolerance)) search_grid(search, tuning);
     if (!status) status = search->status;
     if (!status) status = conclude(search, tuning, error);
-    ck_journal_close(&search->journal, !status);
+    // what a search that ended early has tried is not run again
+    ck_journal_close(&search->journal, !status && !search->is_late);
     ck_run_free(&search->like);
     free(search);
     return status;

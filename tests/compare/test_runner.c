@@ -214,7 +214,7 @@ static void test_patience(void **state) {
     ck_run_free(&run);
     assert_int_equal(ck_run_measure(&run, &comparison.model, &hung, &(ck_Settings){0}, &less, NULL), CK_OK);
     assert_int_equal(run.status, CK_RUN_TOO_SLOW);
-    if (!strstr(run.reason, "not one frame in 0.3 s")) fail_msg("%s", run.reason);
+    if (!strstr(run.reason, "not one frame in 0.4 s")) fail_msg("%s", run.reason);
     ck_run_free(&run);
     ck_comparison_free(&comparison);
 }

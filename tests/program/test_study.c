@@ -252,7 +252,8 @@ static void test_keeping(void **state) {
 static void test_demo(void **state) {
     (void)state;
     char arguments[200];
-    snprintf(arguments, sizeof arguments, "demo -e native-verlet -e bullet-pbd --out %s/demo", fixture_directory);
+    snprintf(arguments, sizeof arguments, "demo -e native-verlet -e bullet-pbd --patience 100 --out %s/demo",
+             fixture_directory);
     assert_int_equal(fixture_program(arguments), 0);
     fixture_assert_output("=> rope_hanging: the cheapest within 1 % of the truth is ");
     fixture_assert_output("=> cloth_two_corners: the cheapest within 1 % of the truth is ");

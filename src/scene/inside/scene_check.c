@@ -185,20 +185,20 @@ static ck_Status check_sequence(const Check *check, yaml_node_t *node, const cya
 }
 
 // Engines, each with keys that are numbers.
-static ck_Status check_settings(const Check *check, yaml_node_t *node, const char *path) {
-    bool is_engine = strchr(path, '.'), is_number = is_engine && strchr(strchr(path, '.') + 1, '.');
-    if (is_number) return check_number(check, node, false, path);
+// depth  0: engines, 1: their keys, 2: a number
+static ck_Status check_settings(const Check *check, yaml_node_t *node, int depth, const char *path) {
+    if (depth == 2) return check_number(check, node, false, path);
     if (node->type != YAML_MAPPING_NODE)
         return ck_document_fail(check->document, node, check->error, "%s is %s; it must be a mapping of %s", path,
-                                kind_of(node), is_engine ? "settings" : "engines");
+                                kind_of(node), depth ? "settings" : "engines");
     ck_Status status = CK_OK;
     for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top && !status;
          pair++) {
         yaml_node_t *key = yaml_document_get_node(check->yaml, pair->key);
         char inner[200];
         status = check_once(check, node, pair);
-        snprintf(inner, sizeof inner, "%s.%s", path, scalar_text(key) ? scalar_text(key) : "");
-        if (!status) status = check_settings(check, yaml_document_get_node(check->yaml, pair->value), inner);
+        snprintf(inner, sizeof inner, "%.90s.%.90s", path, scalar_text(key) ? scalar_text(key) : "");
+        if (!status) status = check_settings(check, yaml_document_get_node(check->yaml, pair->value), depth + 1, inner);
     }
     return status;
 }
@@ -211,7 +211,7 @@ static ck_Status check_value(const Check *check, yaml_node_t *node, const cyaml_
     case CYAML_BOOL: return check_boolean(check, node, path);
     case CYAML_STRING: return check_text(check, node, schema, path);
     case CYAML_MAPPING: return check_mapping(check, node, schema->mapping.fields, path);
-    case CYAML_IGNORE: return check_settings(check, node, path);
+    case CYAML_IGNORE: return check_settings(check, node, 0, path);
     default: return check_sequence(check, node, schema, path);
     }
 }
