@@ -20,7 +20,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_UPDATE = 128,
     CK_TAKES_KEEPING = 256, // --append, --force
     CK_TAKES_BENCH = 512,
-    CK_TAKES_PATIENCE = 1024
+    CK_TAKES_PATIENCE = 1024,
+    CK_TAKES_FIT = 2048
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -36,9 +37,9 @@ struct ck_Command {
     int (*run)(const ck_Command *command, int argc, char **argv);
 };
 
-extern const ck_Command ck_command_demo, ck_command_list, ck_command_run, ck_command_compare, ck_command_check,
-    ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge, ck_command_report,
-    ck_command_claims, ck_command_bench;
+extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_command_run, ck_command_compare,
+    ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge,
+    ck_command_report, ck_command_claims, ck_command_bench;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -46,7 +47,9 @@ typedef struct ck_Arguments {
     ck_CompareOptions options;
     const ck_Engine *engines[CK_COMPARISON_MAX_ENGINES];
     ck_Override overrides[64];
-    const char *out; // directory; NULL: none
+    const char *out;    // directory; NULL: none
+    const char *points; // of fit; NULL: none
+    double uncertainty; // of each of its coordinates, m
     int shard, shards;
     bool runs_nothing;
     bool appends, forces;  // into a directory that holds other results: keeps them, replaces them

@@ -1,11 +1,14 @@
 // The studies of a scene that run a list of cases.
+#include "fit.h"
 #include "needs.h"
 #include "precision.h"
 #include "stability_study.h"
 #include "studies.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static ck_Status run_precision(const ck_StudyCommand *command, ck_Error *error) {
     ck_Precision precision;
@@ -126,4 +129,82 @@ const ck_Command ck_command_needs = {
     .out = "out",
     .seconds = 60,
     .run = needs,
+};
+
+// Values as a scene file takes them, and which of them the data hardly tell apart.
+static void print_fit(const ck_Fit *fit, const ck_FitOptions *options, const ck_Comparison *comparison) {
+    printf("%-10s %-6s %12s %12s %12s %12s\n", "parameter", "unit", "value", "from", "to (95 %)", "started at");
+    for (int i = 0; i < CK_FIT_PARAMETERS; i++)
+        if (options->varies[i])
+            printf("%-10s %-6s %12.5g %12.5g %12.5g %12.5g\n", ck_fit_names[i], ck_fit_units[i], fit->value[i],
+                   fit->low[i], fit->high[i], fit->start[i]);
+    printf("=> %s: %d numbers, %d runs, %.2g times the uncertainty is left%s\n", comparison->model.name,
+           fit->number_count, fit->evaluations, fit->misfit,
+           fit->misfit > 2 ? ": the model is not what was measured, or the uncertainty is larger" : "");
+    for (int i = 0; i < CK_FIT_PARAMETERS; i++)
+        for (int k = 0; k < i; k++)
+            if (options->varies[i] && options->varies[k] && fabs(fit->correlation[i][k]) > 0.98)
+                printf("=> the data hardly tell %s from %s (correlation %.4f): only together are they known\n",
+                       ck_fit_names[i], ck_fit_names[k], fit->correlation[i][k]);
+}
+
+static ck_Status read_fit(ck_FitOptions *options, const ck_StudyCommand *command, ck_Error *error) {
+    const ck_Arguments *arguments = command->arguments;
+    bool has_engine = arguments->options.engines == arguments->engines;
+    if (has_engine && arguments->options.engine_count != 1)
+        return ck_fail(error, CK_BAD_INPUT, "fit takes one --engine, or none for the scene's truth");
+    *options =
+        (ck_FitOptions){.engine = has_engine ? arguments->engines[0] : NULL, .limits = arguments->options.limits};
+    if (has_engine)
+        options->settings = ck_comparison_settings(options->engine, &command->comparison->scene, &arguments->options);
+    for (int i = 0; i < arguments->vary_count; i++) {
+        int parameter = 0;
+        while (parameter < CK_FIT_PARAMETERS && strcmp(arguments->varies[i], ck_fit_names[parameter])) parameter++;
+        if (parameter == CK_FIT_PARAMETERS)
+            return ck_fail(error, CK_BAD_INPUT, "--vary %s: it must be stiffness, damping or drag",
+                           arguments->varies[i]);
+        options->varies[parameter] = true;
+    }
+    return CK_OK;
+}
+
+static ck_Status run_fit(const ck_StudyCommand *command, ck_Error *error) {
+    const ck_Arguments *arguments = command->arguments;
+    ck_FitOptions options;
+    ck_FitData data = {0};
+    ck_Fit fit;
+    ck_Csv csv = {0};
+    ck_Status status = read_fit(&options, command, error);
+    if (!status && arguments->points)
+        status = ck_fit_data_read(&data, arguments->points, &command->comparison->model, error);
+    data.uncertainty = arguments->uncertainty;
+    if (!status) status = ck_fit_run(&fit, command->comparison, &data, &options, error);
+    if (!status) status = ck_study_command_open(command, &csv, CK_FIT, error);
+    if (!status) ck_fit_write(&fit, command->comparison, &options, &csv);
+    if (!status) status = ck_csv_close(&csv, error);
+    if (!status) {
+        print_fit(&fit, &options, command->comparison);
+        printf("CSV: %s/fit.csv\nNext: put the values into the scene, and clothcheck compare it\n", arguments->out);
+    }
+    ck_csv_discard(&csv);
+    ck_fit_data_free(&data);
+    return status;
+}
+
+static int fit_values(const ck_Command *command, int argc, char **argv) {
+    return ck_study_command(command, CK_FIT, argc, argv, run_fit);
+}
+
+const ck_Command ck_command_fit = {
+    .name = "fit",
+    .arguments = "SCENE",
+    .about = "stiffness, damping and drag from a measurement: fit.csv",
+    .help = "Finds the values of --vary stiffness, damping or drag at which the scene's truth, or one --engine, comes "
+            "closest "
+            "to\nwhat was measured: --points FILE, and the scene's own key measured. Each comes with the interval that "
+            "the\nmeasurement's uncertainty leaves. The scene's values are the start.",
+    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_FIT,
+    .out = "out",
+    .seconds = 60,
+    .run = fit_values,
 };

@@ -69,6 +69,17 @@ typedef struct ck_SceneRelease {
     uint32_t pins_count;
 } ck_SceneRelease;
 
+// A value that was measured of the whole body, and its standard uncertainty.
+typedef struct ck_SceneMeasure {
+    double value, uncertainty;
+} ck_SceneMeasure;
+
+typedef struct ck_SceneMeasured {
+    ck_SceneMeasure *sag;         // m
+    ck_SceneMeasure *stretch_max; // 1
+    ck_SceneMeasure *period;      // s
+} ck_SceneMeasured;
+
 typedef struct ck_SceneTime {
     double duration, step; // s
     double fps;            // frames a second, in place of step; 0: step is given
@@ -94,6 +105,7 @@ typedef struct ck_SceneFile {
     char *truth;
     char **measure;
     uint32_t measure_count;
+    ck_SceneMeasured *measured; // NULL: nothing
 } ck_SceneFile;
 
 // A setting of an engine, as it is written: which engines there are, and what they have, is not known here.

@@ -31,6 +31,9 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"time.duration", CK_RANGE_POSITIVE},
     {"time.step", CK_RANGE_POSITIVE},
     {"time.fps", CK_RANGE_POSITIVE},
+    {"measured.sag.uncertainty", CK_RANGE_POSITIVE},
+    {"measured.stretch_max.uncertainty", CK_RANGE_POSITIVE},
+    {"measured.period.uncertainty", CK_RANGE_POSITIVE},
     {NULL, CK_RANGE_FINITE},
 };
 
@@ -130,6 +133,19 @@ static const cyaml_schema_field_t time_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t measure_fields[] = {
+    CYAML_FIELD_FLOAT("value", REQUIRED, ck_SceneMeasure, value),
+    CYAML_FIELD_FLOAT("uncertainty", REQUIRED, ck_SceneMeasure, uncertainty),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t measured_fields[] = {
+    CYAML_FIELD_MAPPING_PTR("sag", OPTIONAL, ck_SceneMeasured, sag, measure_fields),
+    CYAML_FIELD_MAPPING_PTR("stretch_max", OPTIONAL, ck_SceneMeasured, stretch_max, measure_fields),
+    CYAML_FIELD_MAPPING_PTR("period", OPTIONAL, ck_SceneMeasured, period, measure_fields),
+    CYAML_FIELD_END,
+};
+
 static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_STRING_PTR("name", REQUIRED | CYAML_FLAG_POINTER, ck_SceneFile, name, 1, 100),
     CYAML_FIELD_STRING_PTR("about", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, about, 0, CYAML_UNLIMITED),
@@ -148,6 +164,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING("time", REQUIRED, ck_SceneFile, time, time_fields),
     CYAML_FIELD_STRING_PTR("truth", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, truth, 1, 100),
     CYAML_FIELD_SEQUENCE("measure", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, measure, &text, 0, 100),
+    CYAML_FIELD_MAPPING_PTR("measured", OPTIONAL, ck_SceneFile, measured, measured_fields),
     CYAML_FIELD_IGNORE("settings", OPTIONAL),
     CYAML_FIELD_END,
 };
