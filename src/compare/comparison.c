@@ -1,8 +1,8 @@
 #include "comparison.h"
 
 #include "names.h"
-#include "random.h"
 #include "runner.h"
+#include "statistics.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 // One small experiment for each quirk of the origins, in their own units.
 #include "claims.h"
 #include "engines.h"
-#include "random.h"
 #include "seed.h"
+#include "statistics.h"
 #include "vector.h"
 
 #include <math.h>

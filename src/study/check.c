@@ -1,7 +1,7 @@
 #include "check.h"
 
 #include "csv_reader.h"
-#include "random.h"
+#include "statistics.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "stability_study.h"
 
 #include "equilibrium.h"
-#include "random.h"
 #include "springs.h"
+#include "statistics.h"
 #include "time_scale.h"
 #include "vector.h"
 

@@ -3,9 +3,9 @@
 #include "process.h"
 
 #include "metric.h"
-#include "random.h"
 #include "runge_kutta.h"
 #include "springs.h"
+#include "statistics.h"
 #include "time_scale.h"
 #include "vector.h"
 

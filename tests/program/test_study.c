@@ -2,8 +2,8 @@
 #include "fixture.h"
 #include "fixture_program.h"
 
-#include "random.h"
 #include "stability_study.h"
+#include "statistics.h"
 #include "time_scale.h"
 
 #include <signal.h>

@@ -3,7 +3,7 @@
 #include "fixture_program.h"
 
 #include "fit.h"
-#include "random.h"
+#include "statistics.h"
 
 #include <unistd.h>
 

@@ -3,7 +3,7 @@
 #include "fixture_truth.h"
 
 #include "prediction.h"
-#include "random.h"
+#include "statistics.h"
 #include "vector.h"
 
 static const char net[] = "name: net\ncloth: {rows: 5, columns: 5, spacing: 0.1, mass: 0.25, down: [0, 0, "

@@ -1,6 +1,6 @@
 #include "body.h"
 
-#include "random.h"
+#include "statistics.h"
 #include "vector.h"
 
 #include <stdio.h>

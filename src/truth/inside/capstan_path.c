@@ -1,9 +1,9 @@
 #include "capstan_path.h"
 
 #include "process.h"
-#include "random.h"
 #include "rest_forms.h"
 #include "shape.h"
+#include "statistics.h"
 #include "time_scale.h"
 #include "vector.h"
 

@@ -1,8 +1,8 @@
 #include "runge_kutta.h"
 
 #include "process.h"
-#include "random.h"
 #include "springs.h"
+#include "statistics.h"
 #include "time_scale.h"
 #include "vector.h"
 
