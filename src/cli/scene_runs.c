@@ -25,8 +25,21 @@ void ck_command_catch_signals(void) {
     signal(SIGTERM, interrupt);
 }
 
+// How far a comparison of several scenes has come, for its line on the terminal.
+static struct {
+    int scene, scenes;
+    double start; // of ck_wall
+} far;
+
 static void show_progress(const char *scene, const char *engine, const char *doing) {
-    ck_progress_show("%s %s on %s", doing, engine, scene);
+    char left[60] = "";
+    if (far.scene)
+        snprintf(left, sizeof left, "; about %.0f s more",
+                 (ck_wall() - far.start) / far.scene * (far.scenes - far.scene));
+    if (far.scenes > 1)
+        ck_progress_show("scene %d of %d%s: %s %s on %s", far.scene + 1, far.scenes, left, doing, engine, scene);
+    else
+        ck_progress_show("%s %s on %s", doing, engine, scene);
 }
 
 // Two scenes of one name would be one in the CSVs.
@@ -47,7 +60,10 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
     char *cache = arguments->out ? ck_path_join(arguments->out, "truths") : NULL;
     options.cache = cache;
     ck_Status status = CK_OK;
+    far.start = ck_wall();
+    far.scenes = arguments->scene_count;
     for (int i = 0; i < arguments->scene_count && !status; i++) {
+        far.scene = i;
         status = ck_comparison_run(&comparisons[i], &options, error);
         ck_progress_clear();
         if (!status && arguments->out) ck_tables_add(tables, &comparisons[i], &options);
