@@ -79,7 +79,7 @@ struct Classic {
 };
 
 // Its own settings, by their numbers.
-enum { OWN_DAMPING, OWN_REORDERED, OWN_COUNT };
+enum { OWN_DAMPING, OWN_REORDERED };
 
 struct ClassicState {
     ck_BulletModel scene;
@@ -123,8 +123,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     used->substeps = wanted->substeps;
     used->iterations = wanted->iterations ? wanted->iterations : sweeps;
     used->softness = wanted->softness;
-    for (int i = 0; i < OWN_COUNT; i++)
-        if (ck_settings_has(wanted, CK_OWN + i)) ck_settings_set(used, CK_OWN + i, wanted->own[i]);
+    ck_settings_take_own(used, wanted);
     double rate = ck_stability_stiffness_rate(model), limit = rate > 0 ? std::sqrt(0.2 / rate) : INFINITY;
     if (model->terms & CK_TERM_RIGID) limit = ck_stability_bar_time(model, used->iterations);
     limit = std::fmin(limit, 0.5 / ck_stability_damping_rate(model));

@@ -29,7 +29,7 @@ typedef struct OdeWorld {
 } OdeWorld;
 
 // Its own settings, by their numbers.
-enum { OWN_ERP, OWN_CFM, OWN_COUNT };
+enum { OWN_ERP, OWN_CFM };
 
 // dInitODE2 and dCloseODE bracket all worlds of the process.
 static int world_count;
@@ -114,8 +114,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
     if (quick && rate > 0) limit = fmin(limit, sqrt((model->collider_count ? 4 : 10) / rate));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
-    for (int i = 0; i < OWN_COUNT; i++)
-        if (ck_settings_has(wanted, CK_OWN + i)) ck_settings_set(used, CK_OWN + i, wanted->own[i]);
+    ck_settings_take_own(used, wanted);
     if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
     if (quick) used->relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1.3;
     double h = model->step / used->substeps;

@@ -32,7 +32,7 @@ static double chance_of_at_most(int heads, int count) {
 
 void ck_median_interval(double *values, int count, double *low, double *high) {
     *low = *high = NAN;
-    if (count < 1) return;
+    if (count < 2) return;
     qsort(values, (size_t)count, sizeof *values, compare_numbers);
     int outside = 0; // order statistics left out at either end
     while (2 * outside + 2 < count && 2 * chance_of_at_most(outside + 1, count) <= 0.05) outside++;

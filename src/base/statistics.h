@@ -15,7 +15,8 @@ double ck_median(double *values, int count);
 double ck_slope(const double *x, const double *y, int count);
 
 // Two of the values between which the median of what they are drawn from lies with 95 %, whatever its distribution: the
-// least and the most where there are fewer than six. Sorts them; NaN where there are none.
+// least and the most where there are fewer than six. Sorts them; NaN where there are fewer than two, as one says
+// nothing of the others.
 void ck_median_interval(double *values, int count, double *low, double *high);
 
 // A small seeded generator whose numbers are the same on every machine, which rand() does not promise.

@@ -160,10 +160,6 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
     return status;
 }
 
-bool ck_comparison_has_path(const ck_Comparison *comparison, int run) {
-    return ck_run_has_all_frames(&comparison->runs[run]);
-}
-
 bool ck_comparison_scores(const ck_Comparison *comparison, int index, ck_Model *model, ck_Reference *reference) {
     const ck_Run *run = &comparison->runs[index];
     *model = comparison->model;

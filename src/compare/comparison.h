@@ -68,9 +68,6 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
 void ck_comparison_free_runs(ck_Comparison *comparison);
 void ck_comparison_free(ck_Comparison *comparison);
 
-// True where the run has all its frames, so that it can be measured.
-bool ck_comparison_has_path(const ck_Comparison *comparison, int run);
-
 // What a run is scored by: the scene and its truth, or of a run that was cut both up to there. False where it cannot be
 // scored: it has no path, or the truth knows only the end.
 bool ck_comparison_scores(const ck_Comparison *comparison, int run, ck_Model *model, ck_Reference *reference);

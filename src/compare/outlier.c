@@ -22,7 +22,7 @@ static Field gather(const ck_Comparison *comparison, const ck_Metric *metric) {
     for (int i = 0; i < comparison->run_count; i++) {
         const ck_Run *run = &comparison->runs[i];
         if (run->engine->method == CK_METHOD_STILL || run->status != CK_RUN_OK ||
-            !ck_comparison_has_path(comparison, i))
+            !ck_run_has_all_frames(&comparison->runs[i]))
             continue;
         double value = ck_metric_value(metric, &comparison->model, &run->trajectory, &comparison->truth.reference);
         double own = ck_metric_deviation(metric, &comparison->model, &run->trajectory, &run->trajectory,

@@ -28,6 +28,8 @@ static void write_command(char *out, size_t size, const ck_Comparison *compariso
                           const ck_CompareOptions *options) {
     const char *engine = run->engine->name;
     size_t used = (size_t)snprintf(out, size, "clothcheck run %s --engine %s", comparison->path, engine);
+    if (run->status == CK_RUN_TOO_SLOW)
+        used += (size_t)snprintf(out + used, size - used, " --patience %g", options->limits.patience);
     for (int i = 0; i < options->override_count; i++) {
         const ck_Override *override = &options->overrides[i];
         if (override->engine != run->engine) continue;
@@ -88,7 +90,7 @@ static void add_metrics(ck_Csv *csv, const ck_Comparison *comparison, int index)
         // where a truth was asked for and is not to be had, the kind says why
         ck_csv_text(csv, isnan(truth) && comparison->truth.path_count ? "" : comparison->truth.kind);
         // the paths whose spread it is end at the scene's end
-        bool is_whole = ck_comparison_has_path(comparison, index);
+        bool is_whole = ck_run_has_all_frames(&comparison->runs[index]);
         ck_csv_number(csv, is_whole ? ck_truth_uncertainty(&comparison->truth, model, metric) : NAN);
         ck_csv_number(csv, fabs(value - truth));
         // a path of one frame has no whole-run metrics
@@ -131,7 +133,8 @@ static void add_deviations(ck_Csv *csv, const ck_Comparison *comparison) {
         const ck_Metric *metric = ck_metric_at(i);
         for (int one = 0; one < comparison->run_count && ck_metric_is_wanted(metric, model); one++)
             for (int other = one + 1; other < comparison->run_count; other++) {
-                if (!ck_comparison_has_path(comparison, one) || !ck_comparison_has_path(comparison, other)) continue;
+                if (!ck_run_has_all_frames(&comparison->runs[one]) || !ck_run_has_all_frames(&comparison->runs[other]))
+                    continue;
                 double deviation =
                     ck_metric_deviation(metric, model, &comparison->runs[one].trajectory,
                                         &comparison->runs[other].trajectory, &comparison->truth.reference);

@@ -57,6 +57,11 @@ double ck_settings_own(const ck_Settings *settings, int index, double otherwise)
     return ck_settings_has(settings, CK_OWN + index) ? settings->own[index] : otherwise;
 }
 
+void ck_settings_take_own(ck_Settings *used, const ck_Settings *wanted) {
+    memcpy(used->own, wanted->own, sizeof used->own);
+    used->own_set = wanted->own_set;
+}
+
 void ck_settings_override(ck_Settings *settings, const ck_Settings *by) {
     for (int slot = 0; slot < CK_OWN + CK_OWN_SETTINGS; slot++)
         if (ck_settings_has(by, slot)) ck_settings_set(settings, slot, ck_settings_get(by, slot));

@@ -63,6 +63,9 @@ void ck_settings_set(ck_Settings *settings, int slot, double value);
 // An engine's own, by its number; otherwise, where it is not set.
 double ck_settings_own(const ck_Settings *settings, int index, double otherwise);
 
+// Takes an engine's own settings over, as they are wanted.
+void ck_settings_take_own(ck_Settings *used, const ck_Settings *wanted);
+
 // Takes over every setting that is set.
 void ck_settings_override(ck_Settings *settings, const ck_Settings *by);
 

@@ -264,5 +264,5 @@ bool ck_timing_is_known(const ck_Timing *timing, double enough) {
 }
 
 double ck_timing_iqr(const ck_Timing *timing) {
-    return quantile(timing, 0.75) - quantile(timing, 0.25);
+    return timing->repeat_count > 1 ? quantile(timing, 0.75) - quantile(timing, 0.25) : NAN;
 }

@@ -50,7 +50,7 @@ ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Er
 // Accepts a zeroed run.
 void ck_run_free(ck_Run *run);
 
-// Median, interquartile range and simulated time of the repeats; all NaN without any.
+// Median and interquartile range of the repeats; NaN without any, the range with one, too.
 double ck_timing_median(const ck_Timing *timing);
 double ck_timing_iqr(const ck_Timing *timing);
 

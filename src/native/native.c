@@ -65,11 +65,6 @@ void ck_native_destroy(void *state) {
     free(native);
 }
 
-void ck_native_take_vectors(ck_Settings *used, const ck_Settings *wanted) {
-    if (ck_settings_has(wanted, CK_OWN + CK_NATIVE_VECTORS))
-        ck_settings_set(used, CK_OWN + CK_NATIVE_VECTORS, wanted->own[CK_NATIVE_VECTORS]);
-}
-
 const ck_Loops *ck_native_loops(const ck_Native *native) {
     return ck_loops_for((uint32_t)ck_settings_own(&native->used, CK_NATIVE_VECTORS, 0));
 }

@@ -45,9 +45,6 @@ void ck_native_read(const void *state, double *position, double *velocity);
 // Forgets the contact force of the frame before.
 void ck_native_start_frame(ck_Native *native);
 
-// Takes the natives' own setting over.
-void ck_native_take_vectors(ck_Settings *used, const ck_Settings *wanted);
-
 // The loops over rows of the vectors that are set, or of the widest.
 const struct ck_Loops *ck_native_loops(const ck_Native *native);
 

@@ -50,7 +50,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                           .iterations = wanted->iterations ? wanted->iterations : ck_stability_sweeps(model),
                           .relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1,
                           .threads = wanted->threads};
-    ck_native_take_vectors(used, wanted);
+    ck_settings_take_own(used, wanted);
     if (!used->substeps)
         used->substeps = ck_stability_substeps(
             model, fmin(ck_stability_drag_time(model, 0.25), ck_stability_bar_time(model, used->iterations)));

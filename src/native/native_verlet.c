@@ -88,7 +88,7 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     if (frequency > 0) limit = fmin(limit, 0.5 * ck_stability_verlet_limit(frequency, damping));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit),
                           .threads = wanted->threads};
-    ck_native_take_vectors(used, wanted);
+    ck_settings_take_own(used, wanted);
     ck_own_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);
     ck_own_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
     if (model->terms & CK_TERM_DAMPING)

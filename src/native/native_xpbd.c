@@ -88,7 +88,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                           .relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1,
                           .softness = wanted->softness,
                           .threads = wanted->threads};
-    ck_native_take_vectors(used, wanted);
+    ck_settings_take_own(used, wanted);
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
     double dt = model->step / used->substeps;
     ck_own_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);

@@ -114,15 +114,10 @@ static void destroy(void *state) {
     free(cloth);
 }
 
-static uint32_t take_quirks(ck_Settings *used, const ck_Settings *wanted) {
-    if (ck_settings_has(wanted, CK_OWN + CK_CLOTH_MENDED))
-        ck_settings_set(used, CK_OWN + CK_CLOTH_MENDED, wanted->own[CK_CLOTH_MENDED]);
-    return (uint32_t)used->own[CK_CLOTH_MENDED];
-}
-
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : SUBSTEPS_USUAL};
-    uint32_t mended = take_quirks(used, wanted);
+    ck_settings_take_own(used, wanted);
+    uint32_t mended = (uint32_t)used->own[CK_CLOTH_MENDED];
     ck_own_ledger(ledger, model, used, "force -drag*m*v", CK_EXACT);
     ck_own_ledger_springs(ledger, model, "k", "k", CK_EXACT);
     if (model->terms & CK_TERM_DAMPING)

@@ -189,16 +189,11 @@ ck_Status ck_tecido_create(ck_Tecido **out, const ck_Model *model, const ck_Sett
     return CK_OK;
 }
 
-static uint32_t take_quirks(ck_Settings *used, const ck_Settings *wanted) {
-    if (ck_settings_has(wanted, CK_OWN + CK_TECIDO_MENDED))
-        ck_settings_set(used, CK_OWN + CK_TECIDO_MENDED, wanted->own[CK_TECIDO_MENDED]);
-    return (uint32_t)used->own[CK_TECIDO_MENDED];
-}
-
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : 1,
                           .iterations = wanted->iterations ? wanted->iterations : SWEEPS_USUAL};
-    uint32_t mended = take_quirks(used, wanted);
+    ck_settings_take_own(used, wanted);
+    uint32_t mended = (uint32_t)used->own[CK_TECIDO_MENDED];
     ck_own_ledger(ledger, model, used, "", CK_EXACT);
     bool rigid = model->terms & CK_TERM_RIGID;
     ck_own_ledger_springs(ledger, model, "bar", rigid ? "relaxed by sweeps" : "a bar does not stretch",

@@ -34,12 +34,11 @@ static double start_of(const ck_Model *model, int parameter) {
 }
 
 // One measured value of the whole run, where the scene states it; both divided by its uncertainty.
-static int add_scalar(const Problem *problem, const ck_SceneMeasure *measured, const char *metric, double scale,
-                      const ck_Model *model, const ck_Trajectory *path, double *left) {
+static int add_scalar(const ck_SceneMeasure *measured, const char *metric, double scale, const ck_Model *model,
+                      const ck_Trajectory *path, double *left) {
     if (!measured) return 0;
     const ck_Reference none = {.is_static = path->frame_count == 1};
     double value = scale * ck_metric_value(ck_metric_find(metric), model, path, &none);
-    (void)problem;
     *left = (value - measured->value) / measured->uncertainty;
     return 1;
 }
@@ -66,9 +65,9 @@ static void compare_path(const Problem *problem, const ck_Model *model, const ck
         for (int axis = 0; axis < 3; axis++) left[axis] = (left[axis] - data->points[i].at[axis]) / data->uncertainty;
     }
     if (!measured) return;
-    left += add_scalar(problem, measured->sag, "sag", model->size, model, path, left);
-    left += add_scalar(problem, measured->stretch_max, "stretch_max", 1, model, path, left);
-    add_scalar(problem, measured->period, "period", 1, model, path, left);
+    left += add_scalar(measured->sag, "sag", model->size, model, path, left);
+    left += add_scalar(measured->stretch_max, "stretch_max", 1, model, path, left);
+    add_scalar(measured->period, "period", 1, model, path, left);
 }
 
 static void scale_model(const Problem *problem, const double *logarithms, ck_Model *model, ck_Spring *springs) {

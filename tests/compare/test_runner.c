@@ -277,6 +277,10 @@ static void test_timing(void **state) {
     ck_timing_interval(&timing, &low, &high);
     assert_near("least", low, 6, 0);
     assert_near("most", high, 10, 0);
+    // one says nothing of how far the next would be off
+    timing.repeat_count = 1;
+    ck_timing_interval(&timing, &low, &high);
+    assert_true(isnan(low) && isnan(high) && isnan(ck_timing_iqr(&timing)));
 }
 
 static ck_Status count_up(void *context, int index, ck_Error *error) {

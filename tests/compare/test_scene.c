@@ -279,6 +279,9 @@ static int load_blocks(const char *text) {
         char *scene = strndup(at + 8, (size_t)(strstr(at + 8, "```") - at - 8));
         ck_Comparison comparison;
         fixture_load_comparison(&comparison, scene);
+        // a scene that is shown with a truth at rest comes to it
+        if (!strcmp(comparison.model.truth, "equilibrium"))
+            assert_true(ck_settling_time(&comparison.model) <= comparison.model.duration);
         ck_comparison_free(&comparison);
         free(scene);
     }
