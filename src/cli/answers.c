@@ -8,18 +8,18 @@
 #include <string.h>
 
 // An engine that answers: its error and its cost, ms a simulated second.
-typedef struct Answer {
+typedef struct Candidate {
     const ck_Engine *engine;
     double error, cost;
-} Answer;
+} Candidate;
 
 static int compare_costs(const void *a, const void *b) {
-    double x = ((const Answer *)a)->cost, y = ((const Answer *)b)->cost;
+    double x = ((const Candidate *)a)->cost, y = ((const Candidate *)b)->cost;
     return (x > y) - (x < y);
 }
 
 // The engines that came to their end and are within 1 %, the cheapest first.
-static int find_answers(const ck_Comparison *comparison, Answer *answers) {
+static int find_candidates(const ck_Comparison *comparison, Candidate *found) {
     const ck_Metric *position = ck_metric_find("position_rms");
     int count = 0;
     for (int i = 0; i < comparison->run_count; i++) {
@@ -28,34 +28,93 @@ static int find_answers(const ck_Comparison *comparison, Answer *answers) {
         double simulated = run->timing.frames * run->model->step,
                error = ck_metric_value(position, run->model, &run->trajectory, &comparison->truth.reference);
         if (error <= 0.01 && run->timing.repeat_count)
-            answers[count++] = (Answer){run->engine, error, 1e3 * ck_timing_median(&run->timing) / simulated};
+            found[count++] = (Candidate){run->engine, error, 1e3 * ck_timing_median(&run->timing) / simulated};
     }
-    qsort(answers, (size_t)count, sizeof *answers, compare_costs);
+    qsort(found, (size_t)count, sizeof *found, compare_costs);
     return count;
 }
 
-void ck_print_answer(const ck_Comparison *comparison) {
+void ck_answer_cheapest(ck_Answer *answer, const ck_Comparison *comparison) {
     const char *name = comparison->model.name;
-    Answer answers[CK_COMPARISON_MAX_ENGINES];
+    Candidate found[CK_COMPARISON_MAX_ENGINES];
     if (!comparison->truth.reference.trajectory.frame_count) {
-        printf("=> %s: no truth knows its positions; look at what the engines agree on: the page shows it\n", name);
+        ck_answer_line(answer, CK_ANSWER_SAYS,
+                       "%s: no truth knows its positions; look at what the engines agree on: the page shows it", name);
         return;
     }
-    int count = find_answers(comparison, answers);
-    int timed = 0;
+    int count = find_candidates(comparison, found), timed = 0;
     for (int i = 0; i < comparison->run_count; i++) timed += comparison->runs[i].timing.repeat_count > 0;
     if (!timed) return;
     if (!count) {
-        printf("=> %s: no engine that was timed is within 1 %% of the truth; 'clothcheck precision' refines them\n",
-               name);
+        ck_answer_line(answer, CK_ANSWER_SAYS,
+                       "%s: no engine that was timed is within 1 %% of the truth; 'clothcheck precision' refines them",
+                       name);
         return;
     }
-    printf("=> %s: the cheapest within 1 %% of the truth is %s: %.2g %% off, %.3g ms a simulated second", name,
-           answers[0].engine->name, 100 * answers[0].error, answers[0].cost);
+    char next[100] = "";
     if (count > 1)
-        printf("; next %s: %.2g %%, %.2g times as long", answers[1].engine->name, 100 * answers[1].error,
-               answers[1].cost / answers[0].cost);
-    printf("\n");
+        snprintf(next, sizeof next, "; next %s: %.2g %%, %.2g times as long", found[1].engine->name,
+                 100 * found[1].error, found[1].cost / found[0].cost);
+    ck_answer_line(answer, CK_ANSWER_SAYS,
+                   "%s: the cheapest within 1 %% of the truth is %s: %.2g %% off, %.3g ms a simulated second%s", name,
+                   found[0].engine->name, 100 * found[0].error, found[0].cost, next);
+}
+
+static double value_of(const char *metric, const ck_Run *run, const ck_Model *model, const ck_Reference *reference) {
+    return ck_metric_value(ck_metric_find(metric), model, &run->trajectory, reference);
+}
+
+static void add_engine(ck_Answer *answer, const ck_Comparison *comparison, int index) {
+    const ck_Run *run = &comparison->runs[index];
+    double sag = NAN, sag_error = NAN, distance = NAN, stretch = NAN;
+    ck_Model model;
+    ck_Reference reference;
+    if (ck_comparison_scores(comparison, index, &model, &reference)) {
+        sag = value_of("sag", run, &model, &reference);
+        sag_error = fabs(sag - ck_metric_truth(ck_metric_find("sag"), &model, &reference));
+        distance = value_of("position_rms", run, &model, &reference);
+        stretch = value_of("stretch_max", run, &model, &reference);
+    }
+    double cost = 1e3 * ck_timing_median(&run->timing) / (run->timing.frames * run->model->step);
+    ck_answer_text(answer, run->model->name);
+    ck_answer_text(answer, run->engine->name);
+    ck_answer_text(answer, ck_run_status_names[run->status]);
+    const double numbers[] = {sag, sag_error, distance, stretch, cost, cost / 60};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) ck_answer_number(answer, numbers[i]);
+}
+
+// How well the truth is known, or why there is none.
+static void add_truth(ck_Answer *answer, const ck_Comparison *comparison) {
+    const ck_Truth *truth = &comparison->truth;
+    if (!truth->form) return;
+    double known = ck_truth_uncertainty(truth, &comparison->model, ck_metric_find("position_rms"));
+    if (truth->path_count && !isnan(known))
+        ck_answer_line(answer, CK_ANSWER_NOTE, "truth: %s, known to %.1e of the size", truth->kind, known);
+    else if (!truth->path_count && !truth->reference.is_invariant)
+        ck_answer_line(answer, CK_ANSWER_NOTE, "truth: %s", truth->kind);
+}
+
+void ck_answer_summary(ck_Answer *answer, const ck_Comparison *comparison) {
+    static const ck_AnswerColumn columns[] = {{"scene", "scene", -18, NULL},
+                                              {"engine", "engine", -16, NULL},
+                                              {"status", "status", -13, NULL},
+                                              {"sag", "sag", 10, "%.6f"},
+                                              {"sag_error", "error", 9, "%.1e"},
+                                              {"position_rms", "rms error", 9, "%.1e"},
+                                              {"stretch_max", "stretch", 8, "%.4f"},
+                                              {"cpu_ms_per_s", "ms CPU/s", 9, "%.3g"},
+                                              {"cpu_ms_per_frame", "ms/frame", 9, "%.3g"},
+                                              {NULL, NULL, 0, NULL}};
+    ck_answer_table(answer, "runs", NULL, columns);
+    for (int i = 0; i < comparison->run_count; i++) add_engine(answer, comparison, i);
+    add_truth(answer, comparison);
+    for (int i = 0; i < comparison->run_count; i++) {
+        const ck_Run *run = &comparison->runs[i];
+        if (run->status != CK_RUN_OK && run->status != CK_RUN_UNSUPPORTED)
+            ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %.140s", run->engine->name, ck_run_status_names[run->status],
+                           run->reason);
+    }
+    fflush(stdout);
 }
 
 static double number(const ck_CsvTable *table, int row, const char *column) {
@@ -78,89 +137,204 @@ static bool is_new(const ck_CsvTable *table, int row, const char *scene) {
     return true;
 }
 
+// The value of an engine's row of the summary; NAN where there is none.
+static double summary_of(const ck_CsvTable *table, const char *scene, const char *engine, const char *quantity) {
+    for (int i = 0; i < table->row_count; i++)
+        if (is_of(table, i, scene, engine) && !strcmp(text(table, i, "quantity"), quantity))
+            return number(table, i, "value");
+    return NAN;
+}
+
 // The cheapest setting of an engine within an error: seconds, substeps and iterations.
-static void print_cost(const ck_CsvTable *table, const char *scene, const char *engine, double error) {
+static void add_cost(ck_Answer *answer, const ck_CsvTable *table, const char *scene, const char *engine, double error) {
     int best = -1;
     for (int i = 0; i < table->row_count; i++)
         if (is_of(table, i, scene, engine) && !strcmp(text(table, i, "status"), "ok") &&
             number(table, i, "error") <= error &&
             (best < 0 || number(table, i, "cpu_s") < number(table, best, "cpu_s")))
             best = i;
-    char cost[60] = "never";
+    char setting[60] = "";
     if (best >= 0)
-        snprintf(cost, sizeof cost, "%.3g s (%s x %s)", number(table, best, "cpu_s"), text(table, best, "substeps"),
-                 text(table, best, "iterations"));
-    printf("  %-22s", cost);
+        snprintf(setting, sizeof setting, "%s x %s", text(table, best, "substeps"), text(table, best, "iterations"));
+    ck_answer_number(answer, best < 0 ? NAN : number(table, best, "cpu_s"));
+    ck_answer_text(answer, setting);
 }
 
-ck_Status ck_print_precision(const char *directory, const char *scene, ck_Error *error) {
-    ck_CsvTable table = {0};
+static void add_precision(ck_Answer *answer, const ck_CsvTable *table, const ck_CsvTable *summary, const char *scene) {
+    static const ck_AnswerColumn columns[] = {{"engine", "engine", -16, NULL},
+                                              {"least_error", "least", 8, "%.1e"},
+                                              {"order", "order", 6, "%.2f"},
+                                              {"cpu_to_10_percent_s", "to 10 %, s", 10, "%.3g"},
+                                              {"setting_to_10_percent", "", -10, NULL},
+                                              {"cpu_to_1_percent_s", "to 1 %, s", 10, "%.3g"},
+                                              {"setting_to_1_percent", "", -10, NULL},
+                                              {"cpu_to_0.1_percent_s", "to 0.1 %, s", 11, "%.3g"},
+                                              {"setting_to_0.1_percent", "", -10, NULL},
+                                              {NULL, NULL, 0, NULL}};
+    char title[200];
+    snprintf(title, sizeof title, "CPU seconds for the whole of %.100s, at so many substeps x iterations a frame",
+             scene);
+    ck_answer_table(answer, "precision", title, columns);
+    for (int i = 0; i < table->row_count; i++) {
+        const char *engine = text(table, i, "engine");
+        if (!is_new(table, i, scene)) continue;
+        ck_answer_text(answer, engine);
+        ck_answer_number(answer, summary_of(summary, scene, engine, "floor"));
+        ck_answer_number(answer, summary_of(summary, scene, engine, "order"));
+        add_cost(answer, table, scene, engine, 0.1);
+        add_cost(answer, table, scene, engine, 0.01);
+        add_cost(answer, table, scene, engine, 0.001);
+    }
+}
+
+// Who is the cheapest within 1 %, and whom finer steps make worse.
+static void say_precision(ck_Answer *answer, const ck_CsvTable *summary, const char *scene) {
+    int best = -1;
+    for (int i = 0; i < summary->row_count; i++) {
+        if (strcmp(text(summary, i, "scene"), scene)) continue;
+        if (!strcmp(text(summary, i, "quantity"), "finest_useful_substeps"))
+            ck_answer_line(answer, CK_ANSWER_NOTE, "%s, from %s substeps on: %s", text(summary, i, "engine"),
+                           text(summary, i, "value"), text(summary, i, "reason"));
+        if (!strcmp(text(summary, i, "quantity"), "cost_to_1_percent") && !isnan(number(summary, i, "value")) &&
+            (best < 0 || number(summary, i, "value") < number(summary, best, "value")))
+            best = i;
+    }
+    if (best < 0)
+        ck_answer_line(answer, CK_ANSWER_SAYS, "%s: no engine comes within 1 %% at any setting tried", scene);
+    else
+        ck_answer_line(answer, CK_ANSWER_SAYS, "%s: the cheapest way to 1 %% is %s, %.3g s", scene,
+                       text(summary, best, "engine"), number(summary, best, "value"));
+}
+
+ck_Status ck_answer_precision(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error) {
+    ck_CsvTable table = {0}, summary = {0};
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_PRECISION], error);
-    if (!status)
-        printf("CPU seconds for the whole of %s, at so many substeps x iterations a frame\n%-16s %9s  %-22s  %-22s  "
-               "%-22s\n",
-               scene, "engine", "least", "to 10 %", "to 1 %", "to 0.1 %");
-    for (int i = 0; i < table.row_count && !status; i++) {
-        const char *engine = text(&table, i, "engine");
-        double least = INFINITY;
-        if (!is_new(&table, i, scene)) continue;
-        for (int k = i; k < table.row_count; k++)
-            if (is_of(&table, k, scene, engine) && !strcmp(text(&table, k, "status"), "ok"))
-                least = fmin(least, number(&table, k, "error"));
-        printf(isfinite(least) ? "%-16s %9.1e" : "%-16s         -", engine, least);
-        print_cost(&table, scene, engine, 0.1);
-        print_cost(&table, scene, engine, 0.01);
-        print_cost(&table, scene, engine, 0.001);
-        printf("\n");
-    }
+    if (!status) status = ck_csv_table_read(&summary, directory, &ck_layouts[CK_PRECISION_SUMMARY], error);
+    if (!status) add_precision(answer, &table, &summary, scene);
+    if (!status) say_precision(answer, &summary, scene);
     ck_csv_table_free(&table);
+    ck_csv_table_free(&summary);
     return status;
 }
 
-ck_Status ck_print_stability(const char *directory, const char *scene, ck_Error *error) {
+ck_Status ck_answer_stability(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error) {
+    static const ck_AnswerColumn columns[] = {{"engine", "engine", -16, NULL},
+                                              {"damping", "damping", -10, NULL},
+                                              {"critical_step_s", "measured, s", 11, "%.5g"},
+                                              {"predicted_step_s", "theory, s", 11, "%.5g"},
+                                              {"ratio", "ratio", 7, "%.3f"},
+                                              {"status", "status", -13, NULL},
+                                              {NULL, NULL, 0, NULL}};
     ck_CsvTable table = {0};
+    char title[160];
+    snprintf(title, sizeof title, "The longest stable step about the rest of %.100s", scene);
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_STABILITY], error);
-    if (!status)
-        printf("The longest stable step about the rest of %s\n%-16s %-10s %11s %11s %7s\n", scene, "engine", "damping",
-               "measured, s", "theory, s", "ratio");
-    for (int i = 0; i < table.row_count && !status; i++) {
-        double critical = number(&table, i, "critical_step_s"), theory = number(&table, i, "predicted_step_s");
-        if (strcmp(text(&table, i, "scene"), scene) || strcmp(text(&table, i, "case"), "critical")) continue;
-        printf("%-16s %-10s", text(&table, i, "engine"), text(&table, i, "damping"));
-        if (isnan(critical)) {
-            printf(" %s: %.80s\n", text(&table, i, "status"), text(&table, i, "reason"));
-            continue;
+    if (!status) ck_answer_table(answer, "stability", title, columns);
+    for (int pass = 0; pass < 2 && !status; pass++)
+        for (int i = 0; i < table.row_count; i++) {
+            double critical = number(&table, i, "critical_step_s"), theory = number(&table, i, "predicted_step_s");
+            if (strcmp(text(&table, i, "scene"), scene) || strcmp(text(&table, i, "case"), "critical")) continue;
+            if (pass && isnan(critical))
+                ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %.140s", text(&table, i, "engine"),
+                               text(&table, i, "damping"), text(&table, i, "reason"));
+            if (pass) continue;
+            ck_answer_text(answer, text(&table, i, "engine"));
+            ck_answer_text(answer, text(&table, i, "damping"));
+            ck_answer_number(answer, critical);
+            ck_answer_number(answer, theory);
+            ck_answer_number(answer, critical / theory);
+            ck_answer_text(answer, text(&table, i, "status"));
         }
-        printf(" %11.5g", critical);
-        if (!isnan(theory)) printf(" %11.5g %7.3f", theory, critical / theory);
-        printf("\n");
+    ck_csv_table_free(&table);
+    return status;
+}
+
+// The metrics that a case without a term changes, by how much.
+static void list_changes(const ck_CsvTable *table, int first, char *changes, size_t size) {
+    size_t used = 0;
+    for (int i = first; i < table->row_count && used < size; i++) {
+        if (!is_of(table, i, text(table, first, "scene"), text(table, first, "engine")) ||
+            strcmp(text(table, i, "left_out"), text(table, first, "left_out")) ||
+            strcmp(text(table, i, "matters"), "yes"))
+            continue;
+        const char *metric = text(table, i, "metric"), *separator = used ? ", " : "";
+        double change = number(table, i, "change");
+        used +=
+            (size_t)(isinf(change) ? snprintf(changes + used, size - used, "%s%s (has none %s)", separator, metric,
+                                              isnan(number(table, i, "with")) ? "with" : "without")
+                                   : snprintf(changes + used, size - used, "%s%s by %.2g", separator, metric, change));
+    }
+}
+
+static void add_need(ck_Answer *answer, const ck_CsvTable *table, int row) {
+    char changes[400] = "";
+    bool has_metric = *text(table, row, "metric");
+    if (has_metric) list_changes(table, row, changes, sizeof changes);
+    bool was_refused = !strcmp(text(table, row, "status"), ck_run_status_names[CK_RUN_REFUSED]);
+    ck_answer_text(answer, text(table, row, "left_out"));
+    ck_answer_text(answer, was_refused ? "not tried" : !has_metric || *changes ? "is needed" : "is not needed");
+    ck_answer_number(answer, number(table, row, "cpu_with_s"));
+    ck_answer_number(answer, number(table, row, "cpu_without_s"));
+    ck_answer_text(answer, has_metric ? changes : text(table, row, "reason"));
+}
+
+ck_Status ck_answer_needs(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error) {
+    static const ck_AnswerColumn columns[] = {
+        {"left_out", "left out", -24, NULL},     {"verdict", "", -13, NULL},        {"cpu_with_s", "CPU, s", 9, "%.3g"},
+        {"cpu_without_s", "without", 9, "%.3g"}, {"changes", "changes", -20, NULL}, {NULL, NULL, 0, NULL}};
+    ck_CsvTable table = {0};
+    ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_NEEDS], error);
+    if (!status) ck_answer_table(answer, "needs", NULL, columns);
+    for (int i = 0; i < table.row_count && !status; i++) {
+        bool is_first = !strcmp(text(&table, i, "scene"), scene);
+        for (int k = 0; k < i && is_first; k++)
+            is_first = !is_of(&table, k, scene, text(&table, i, "engine")) ||
+                       strcmp(text(&table, k, "left_out"), text(&table, i, "left_out"));
+        if (is_first) add_need(answer, &table, i);
     }
     ck_csv_table_free(&table);
     return status;
 }
 
-ck_Status ck_print_bench(const char *directory, ck_Error *error) {
+ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *error) {
+    static const ck_AnswerColumn columns[] = {
+        {"body", "body", -8, NULL},     {"particles", "particles", 9, "%.0f"},        {"engine", "engine", -16, NULL},
+        {"setup", "set-up", -28, NULL}, {"ns_per_spring", "ns a spring", 11, "%.3g"}, {NULL, NULL, 0, NULL}};
     ck_CsvTable table = {0};
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_BENCH], error);
-    if (!status) printf("%-8s %9s  %-16s %-28s %s\n", "body", "particles", "engine", "set-up", "ns a spring");
+    if (!status) ck_answer_table(answer, "bench", NULL, columns);
     for (int i = 0; i < table.row_count && !status; i++) {
         double value = number(&table, i, "value");
         if (strcmp(text(&table, i, "metric"), "update_time") || isnan(value)) continue;
-        printf("%-8s %9.0f  %-16s %-28s %.3g\n", text(&table, i, "body"), number(&table, i, "particles"),
-               text(&table, i, "engine"), text(&table, i, "setup"), value);
+        ck_answer_text(answer, text(&table, i, "body"));
+        ck_answer_number(answer, number(&table, i, "particles"));
+        ck_answer_text(answer, text(&table, i, "engine"));
+        ck_answer_text(answer, text(&table, i, "setup"));
+        ck_answer_number(answer, value);
     }
     ck_csv_table_free(&table);
     return status;
 }
 
-ck_Status ck_print_quirks(const char *directory, ck_Error *error) {
+ck_Status ck_answer_quirks(ck_Answer *answer, const char *directory, ck_Error *error) {
+    static const ck_AnswerColumn columns[] = {{"engine", "engine", -12, NULL},
+                                              {"quirk", "quirk", -40, NULL},
+                                              {"metric", "", -18, NULL},
+                                              {"as_it_was", "as it was", 11, "%.4g"},
+                                              {"mended", "mended", 11, "%.4g"},
+                                              {"physics", "physics", 11, "%.4g"},
+                                              {NULL, NULL, 0, NULL}};
     ck_CsvTable table = {0};
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_QUIRKS], error);
-    if (!status) printf("%-12s %-40s %-18s %11s %11s %11s\n", "engine", "quirk", "", "as it was", "mended", "physics");
-    for (int i = 0; i < table.row_count && !status; i++)
-        printf("%-12s %-40.40s %-18.18s %11.4g %11.4g %11.4g\n", text(&table, i, "engine"), text(&table, i, "quirk"),
-               text(&table, i, "metric"), number(&table, i, "as_it_was"), number(&table, i, "mended"),
-               number(&table, i, "physics"));
+    if (!status) ck_answer_table(answer, "quirks", NULL, columns);
+    for (int i = 0; i < table.row_count && !status; i++) {
+        ck_answer_text(answer, text(&table, i, "engine"));
+        ck_answer_text(answer, text(&table, i, "quirk"));
+        ck_answer_text(answer, text(&table, i, "metric"));
+        ck_answer_number(answer, number(&table, i, "as_it_was"));
+        ck_answer_number(answer, number(&table, i, "mended"));
+        ck_answer_number(answer, number(&table, i, "physics"));
+    }
     ck_csv_table_free(&table);
     return status;
 }

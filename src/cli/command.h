@@ -2,6 +2,7 @@
 #ifndef CK_COMMAND_H
 #define CK_COMMAND_H
 
+#include "answer.h"
 #include "comparison.h"
 
 #define CK_EXIT_OK 0
@@ -21,7 +22,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_KEEPING = 256, // --append, --force
     CK_TAKES_BENCH = 512,
     CK_TAKES_PATIENCE = 1024,
-    CK_TAKES_FIT = 2048
+    CK_TAKES_FIT = 2048,
+    CK_TAKES_FORM = 4096 // --json, --markdown
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -56,8 +58,11 @@ typedef struct ck_Arguments {
     int rounds, largest;   // of bench
     char question[2048];   // what is asked, without the scene, where to and how fast; words between tabs
     double error;          // a tolerance; NAN: none
+    double stretch;        // a bound of strain; NAN: none
+    double frame;          // ms of CPU a frame of 1/60 s; NAN: any
     double timeout;        // s of a search; 0: any
-    const ck_Engine *like; // NULL: none
+    const char *like;      // an engine or a file; NULL: none
+    const char *target;    // METRIC=VALUE; NULL: none
     const char *varies[4]; // of --vary
     int vary_count;
     char *words[128]; // of a command without scenes
@@ -65,7 +70,8 @@ typedef struct ck_Arguments {
     char *validate[16]; // paths, owned
     int validate_count;
     bool is_update;
-    char **scenes; // paths, owned with their texts
+    ck_Answer answer; // begun
+    char **scenes;    // paths, owned with their texts
     int scene_count;
 } ck_Arguments;
 
@@ -103,21 +109,29 @@ void ck_columns_print(void);
 // Prints what the options are, for --help.
 void ck_arguments_help(const ck_Command *command);
 
-// Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each while
-// its runs are in memory. Returns the exit status, having told of an error on stderr.
-int ck_command_study(const ck_Arguments *arguments, void (*show)(const ck_Comparison *comparison));
+// Shows a scene while its runs are in memory.
+typedef void ck_Show(ck_Answer *answer, const ck_Comparison *comparison);
 
-// Prints one line per engine: status, error and cost. With a header when first is true.
-void ck_print_summary(const ck_Comparison *comparison);
+// Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each.
+// Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
+ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *error);
 
-// Says which engine is the cheapest within 1 % of the truth, which comes next, and what to type next.
-void ck_print_answer(const ck_Comparison *comparison);
+// The exit status of a command that has done its work: its answer is ended, or an error is told on stderr; arguments
+// are freed in any case.
+int ck_command_end(ck_Arguments *arguments, ck_Status status, ck_Error *error);
 
-// Print what a study of a scene came to, of the CSVs in a directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
-ck_Status ck_print_precision(const char *directory, const char *scene, ck_Error *error);
-ck_Status ck_print_stability(const char *directory, const char *scene, ck_Error *error);
-ck_Status ck_print_bench(const char *directory, ck_Error *error);
-ck_Status ck_print_quirks(const char *directory, ck_Error *error);
+// One row an engine: status, error and cost; how well the truth is known; and why an engine failed.
+ck_Show ck_answer_summary;
+
+// Which engine is the cheapest within 1 % of the truth, and which comes next.
+ck_Show ck_answer_cheapest;
+
+// What a study of a scene came to, of the CSVs in a directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
+ck_Status ck_answer_precision(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error);
+ck_Status ck_answer_stability(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error);
+ck_Status ck_answer_needs(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error);
+ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *error);
+ck_Status ck_answer_quirks(ck_Answer *answer, const char *directory, ck_Error *error);
 
 // Asks for signals to end what runs, so that whole files or none are left.
 void ck_command_catch_signals(void);

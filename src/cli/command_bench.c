@@ -28,10 +28,12 @@ static int run(const ck_Command *command, int argc, char **argv) {
     if (!status) status = ck_csv_close(&csv, &error);
     if (!status) status = ck_machine_save(out, &error);
     ck_csv_discard(&csv);
-    if (!status) status = ck_print_bench(out, &error);
-    if (!status) printf("CSV: %s/bench.csv\nNext: clothcheck report %s\n", out, out);
-    ck_arguments_free(&arguments);
-    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
+    if (!status) status = ck_answer_bench(&arguments.answer, out, &error);
+    if (!status) {
+        ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s/bench.csv", out);
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", out);
+    }
+    return ck_command_end(&arguments, status, &error);
 }
 
 const ck_Command ck_command_bench = {
@@ -40,7 +42,7 @@ const ck_Command ck_command_bench = {
     .about = "how fast the engines are: per spring, per step, and as a cloth grows",
     .help = "Times all engines, interleaved, on cloths of 20x20, 64x64 and 256x256 and a rope of 1000, and "
             "native-verlet\nas a cloth grows; writes bench.csv into --out.",
-    .groups = CK_TAKES_OUT | CK_TAKES_BENCH,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_BENCH,
     .out = "out",
     .run = run,
 };

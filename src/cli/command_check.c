@@ -80,12 +80,21 @@ static ck_Status run_cases(Work *work, ck_Error *error) {
     return status;
 }
 
-static void print_deviation(const ck_Deviation *deviation) {
+static const ck_AnswerColumn columns[] = {
+    {"scene", "scene", -20, NULL},   {"engine", "engine", -16, NULL},  {"metric", "metric", -16, NULL},
+    {"value", "is", 16, "%.9g"},     {"was", "was", 16, "%.9g"},       {"band", "within", 8, "%.2g"},
+    {"status", "status", -13, NULL}, {"status_was", "was", -13, NULL}, {NULL, NULL, 0, NULL}};
+
+static void show_deviation(ck_Answer *answer, const ck_Deviation *deviation) {
     const ck_BaselineRow *was = deviation->row;
-    printf("  %-20s %-16s %-16s %16.9g  was %16.9g  within %8.2g%s%s\n", was->scene, was->engine,
-           *was->metric ? was->metric : "status", deviation->value, was->value, was->band,
-           strcmp(deviation->status, was->status) ? "  now " : "",
-           strcmp(deviation->status, was->status) ? deviation->status : "");
+    ck_answer_text(answer, was->scene);
+    ck_answer_text(answer, was->engine);
+    ck_answer_text(answer, *was->metric ? was->metric : "status");
+    ck_answer_number(answer, deviation->value);
+    ck_answer_number(answer, was->value);
+    ck_answer_number(answer, was->band);
+    ck_answer_text(answer, deviation->status);
+    ck_answer_text(answer, was->status);
 }
 
 static int compare_excess(const void *a, const void *b) {
@@ -93,16 +102,18 @@ static int compare_excess(const void *a, const void *b) {
     return (x < y) - (x > y);
 }
 
-// Prints the worst of all deviations; returns how many there are, negative without memory.
-static int print_worst(const Work *work, int most) {
+// Shows the worst of all deviations; returns how many there are, negative without memory.
+static int show_worst(Work *work, int most) {
     ck_Deviation *all = calloc((size_t)work->baseline.count + 1, sizeof *all);
     int count = 0;
     if (!all) return -1;
     for (int i = 0; i < work->check.case_count; i++)
         count += ck_check_compare(&work->check.cases[i], &work->rows[i], &work->baseline, all + count);
     qsort(all, (size_t)count, sizeof *all, compare_excess);
-    for (int i = 0; i < count && i < most; i++) print_deviation(&all[i]);
-    if (count > most) printf("  and %d more\n", count - most);
+    ck_Answer *answer = &work->arguments.answer;
+    ck_answer_table(answer, "deviations", NULL, columns);
+    for (int i = 0; i < count && i < most; i++) show_deviation(answer, &all[i]);
+    if (count > most) ck_answer_line(answer, CK_ANSWER_NOTE, "and %d more", count - most);
     free(all);
     return count;
 }
@@ -129,7 +140,7 @@ static bool add_case(const Work *work, int index, bool is_known, ck_Csv *csv) {
 }
 
 // In the order there was, so that what did not move is no change; what is new comes last.
-static void add_all(const Work *work, ck_Csv *csv) {
+static void add_all(Work *work, ck_Csv *csv) {
     const ck_Check *check = &work->check;
     const ck_BaselineRow *rows = work->baseline.rows;
     int added = 0, kept = 0;
@@ -147,16 +158,18 @@ static void add_all(const Work *work, ck_Csv *csv) {
     for (int i = 0; i < check->case_count; i++)
         if (!has_row(&work->baseline, check->cases[i].comparison->model.name, check->cases[i].engine->name))
             added += add_case(work, i, false, csv);
-    printf("%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or time out and stay\n",
-           BASELINE_DIRECTORY, BASELINE_NAME, added, check->case_count - added - kept, SECONDS, kept, 2 * SECONDS);
+    ck_answer_line(&work->arguments.answer, CK_ANSWER_SAYS,
+                   "%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or time out and stay",
+                   BASELINE_DIRECTORY, BASELINE_NAME, added, check->case_count - added - kept, SECONDS, kept,
+                   2 * SECONDS);
 }
 
-static ck_Status update(const Work *work, ck_Error *error) {
+static ck_Status update(Work *work, ck_Error *error) {
     ck_Csv csv = {0};
     int failed = ck_path_make(BASELINE_DIRECTORY);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", BASELINE_DIRECTORY, strerror(failed)) : CK_OK;
     if (!status) status = ck_csv_open(&csv, BASELINE_DIRECTORY, &ck_layouts[CK_BASELINE], error);
-    if (!status && work->baseline.count) print_worst(work, 1000);
+    if (!status && work->baseline.count) show_worst(work, 1000);
     if (!status) add_all(work, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     ck_csv_discard(&csv);
@@ -178,8 +191,11 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
     char *path = status ? NULL : ck_path_join(arguments->out, "check.xml");
     if (!status && !path) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_check_write_junit(path, &work->check, work->rows, &work->baseline, error);
-    if (!status) *deviations = print_worst(work, MOST_PRINTED);
-    if (!status) printf("%d runs, %d deviations; JUnit: %s\n", work->check.case_count, *deviations, path);
+    if (!status) *deviations = show_worst(work, MOST_PRINTED);
+    if (!status)
+        ck_answer_line(&arguments->answer, CK_ANSWER_SAYS, "%d runs, %d deviations", work->check.case_count,
+                       *deviations);
+    if (!status) ck_answer_line(&arguments->answer, CK_ANSWER_FILES, "%s (JUnit)", path);
     free(path);
     return status;
 }
@@ -195,9 +211,8 @@ static int run(const ck_Command *command, int argc, char **argv) {
     free(work.check.cases);
     free(work.rows);
     ck_baseline_free(&work.baseline);
-    ck_arguments_free(&work.arguments);
-    if (status) return ck_command_fail(status, &error);
-    return deviations ? CK_EXIT_FAILED : CK_EXIT_OK;
+    int ended = ck_command_end(&work.arguments, status, &error);
+    return !ended && deviations ? CK_EXIT_FAILED : ended;
 }
 
 const ck_Command ck_command_check = {
@@ -208,7 +223,7 @@ const ck_Command ck_command_check = {
             " holds again and prints what is beyond its band, the worst first;\nwrites check.xml (JUnit). Exit "
             "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size change at "
             "most: what rounding may come to on another machine.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_UPDATE,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_UPDATE,
     .out = "out",
     .seconds = 900,
     .run = run,

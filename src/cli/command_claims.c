@@ -35,10 +35,12 @@ static int run(const ck_Command *command, int argc, char **argv) {
     const char *out = arguments.out;
     if (!status) status = write_tables(out, &error);
     if (!status) status = ck_machine_save(out, &error);
-    if (!status) status = ck_print_quirks(out, &error);
-    if (!status) printf("CSVs: %s/{claims.csv, quirks.csv}\n", out);
-    ck_arguments_free(&arguments);
-    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
+    if (!status) status = ck_answer_quirks(&arguments.answer, out, &error);
+    if (!status) {
+        ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s/{claims.csv, quirks.csv}", out);
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", out);
+    }
+    return ck_command_end(&arguments, status, &error);
 }
 
 const ck_Command ck_command_claims = {
@@ -47,7 +49,7 @@ const ck_Command ck_command_claims = {
     .about = "what was claimed of the two origins, and what their quirks cost",
     .help = "Tests what was claimed of the two origins: writes claims.csv, sweeps over what each claim leaves open, "
             "and\nquirks.csv, what each of their quirks costs, into --out. Takes some minutes.",
-    .groups = CK_TAKES_OUT,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT,
     .out = "out",
     .run = run,
 };

@@ -4,25 +4,28 @@
 #include <stdio.h>
 #include <string.h>
 
-// Says which engine stands apart, if any does.
-static void print_outliers(const ck_Comparison *comparison) {
+// Which engine stands apart, if any does.
+static void show_outliers(ck_Answer *answer, const ck_Comparison *comparison) {
     for (int i = 0; i < ck_metric_count(); i++) {
         const ck_Metric *metric = ck_metric_at(i);
         if (!metric->at || !ck_metric_is_wanted(metric, &comparison->model)) continue;
         ck_Outlier outlier = ck_outlier_find(comparison, metric);
         if (outlier.run < 0) continue;
-        printf(outlier.has_truth ? "  farthest from the truth in %s: %s, %.1e; the others %.1e\n"
-                                 : "  outlier in %s: %s, %.1e from the others, which are %.1e apart\n",
-               metric->name, comparison->runs[outlier.run].engine->name, outlier.distance, outlier.rest);
+        const char *name = comparison->runs[outlier.run].engine->name;
+        if (outlier.has_truth)
+            ck_answer_line(answer, CK_ANSWER_NOTE, "farthest from the truth in %s: %s, %.1e; the others %.1e",
+                           metric->name, name, outlier.distance, outlier.rest);
+        else
+            ck_answer_line(answer, CK_ANSWER_NOTE, "outlier in %s: %s, %.1e from the others, which are %.1e apart",
+                           metric->name, name, outlier.distance, outlier.rest);
     }
 }
 
-static void show(const ck_Comparison *comparison) {
-    ck_print_summary(comparison);
-    print_outliers(comparison);
-    ck_print_answer(comparison);
-    printf("\n");
-    fflush(stdout);
+static void show(ck_Answer *answer, const ck_Comparison *comparison) {
+    ck_answer_summary(answer, comparison);
+    show_outliers(answer, comparison);
+    ck_answer_cheapest(answer, comparison);
+    ck_answer_gap(answer);
 }
 
 static int run(const ck_Command *command, int argc, char **argv) {
@@ -30,13 +33,15 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Arguments arguments;
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status) status = ck_arguments_all_scenes(&arguments, &error);
-    int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
-    if (result == CK_EXIT_OK)
-        printf("sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated second "
-               "(median), ms/frame that of 1/60 s.\nCSVs: %s\nNext: clothcheck report %s\n",
-               arguments.out, arguments.out);
-    ck_arguments_free(&arguments);
-    return result;
+    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status) {
+        ck_answer_line(&arguments.answer, CK_ANSWER_NOTE,
+                       "sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated "
+                       "second (median), ms/frame that of 1/60 s");
+        ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s", arguments.out);
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments.out);
+    }
+    return ck_command_end(&arguments, status, &error);
 }
 
 const ck_Command ck_command_compare = {
@@ -46,7 +51,8 @@ const ck_Command ck_command_compare = {
     .help = "Runs all engines on all scenes (without SCENE: scenes/*.yaml) and writes runs.csv, metrics.csv, "
             "deviations.csv,\nledger.csv, series.csv and machine.csv into --out. Results there that this "
             "comparison would not\nreplace stop it: --append keeps those of other scenes, --force replaces all.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS | CK_TAKES_KEEPING,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS |
+              CK_TAKES_KEEPING,
     .out = "out",
     .seconds = 900,
     .patience = 10,

@@ -5,11 +5,10 @@
 
 static const char *const scenes[] = {"rope_hanging", "cloth_two_corners", "cloth_on_sphere"};
 
-static void show(const ck_Comparison *comparison) {
-    ck_print_summary(comparison);
-    ck_print_answer(comparison);
-    printf("\n");
-    fflush(stdout);
+static void show(ck_Answer *answer, const ck_Comparison *comparison) {
+    ck_answer_summary(answer, comparison);
+    ck_answer_cheapest(answer, comparison);
+    ck_answer_gap(answer);
 }
 
 static int run(const ck_Command *command, int argc, char **argv) {
@@ -22,17 +21,14 @@ static int run(const ck_Command *command, int argc, char **argv) {
     arguments.options.consistency_budget = 0;
     arguments.options.budget = 0.1;
     arguments.options.enough = 0.2;
-    int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
-    if (result == CK_EXIT_OK) {
-        status = ck_report_write(arguments.out, &error);
-        if (status)
-            result = ck_command_fail(status, &error);
-        else
-            printf("The page, to be opened in a browser: %s/index.html\nNext: clothcheck compare YOUR_SCENE.yaml\n",
-                   arguments.out);
+    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status) status = ck_report_write(arguments.out, &error);
+    if (!status) {
+        ck_answer_line(&arguments.answer, CK_ANSWER_NOTE, "the page, to be opened in a browser: %s/index.html",
+                       arguments.out);
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck compare YOUR_SCENE.yaml");
     }
-    ck_arguments_free(&arguments);
-    return result;
+    return ck_command_end(&arguments, status, &error);
 }
 
 const ck_Command ck_command_demo = {
@@ -41,7 +37,8 @@ const ck_Command ck_command_demo = {
     .about = "three scenes, the page and the answer, in about 20 s",
     .help = "Runs a rope, a hung cloth and a cloth on a ball with the engines that answer in time, says which is the "
             "cheapest\nwithin 1 %, and writes the CSVs and the page into --out.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS | CK_TAKES_KEEPING,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS |
+              CK_TAKES_KEEPING,
     .out = "demo",
     .seconds = 60,
     .patience = 1.5,

@@ -3,20 +3,34 @@
 #include <stdio.h>
 #include <string.h>
 
-static void show(const ck_Comparison *comparison) {
-    ck_print_summary(comparison);
-    ck_print_answer(comparison);
-    for (int i = 0; i < comparison->run_count; i++) {
-        const ck_Run *run = &comparison->runs[i];
-        printf("\n%s: %s; %u substeps", run->engine->name, run->reason, run->used.substeps);
-        if (run->used.iterations) printf(", %u iterations", run->used.iterations);
-        printf("\n");
-        for (int row = 0; row < run->ledger.count; row++) {
-            const ck_LedgerRow *entry = &run->ledger.rows[row];
-            printf("  %-21s %10.4g %-6s as %s = %.6g (%s): %s\n", entry->quantity, entry->wanted, entry->unit,
-                   entry->native_parameter, entry->native_value, entry->formula, ck_match_names[entry->match]);
-        }
+static void show_ledger(ck_Answer *answer, const ck_Run *run) {
+    static const ck_AnswerColumn columns[] = {
+        {"engine", "engine", -15, NULL}, {"quantity", "quantity", -20, NULL},   {"wanted", "wanted", 10, "%.4g"},
+        {"unit", "", -6, NULL},          {"native_parameter", "as", -18, NULL}, {"native_value", "=", 12, "%.6g"},
+        {"match", "match", -11, NULL},   {"formula", "by", -20, NULL},          {NULL, NULL, 0, NULL}};
+    char title[800], iterations[40] = "";
+    if (run->used.iterations) snprintf(iterations, sizeof iterations, ", %u iterations", run->used.iterations);
+    snprintf(title, sizeof title, "%s: %s; %u substeps%s", run->engine->name, run->reason, run->used.substeps,
+             iterations);
+    ck_answer_gap(answer);
+    ck_answer_table(answer, "ledger", title, columns);
+    for (int row = 0; row < run->ledger.count; row++) {
+        const ck_LedgerRow *entry = &run->ledger.rows[row];
+        ck_answer_text(answer, run->engine->name);
+        ck_answer_text(answer, entry->quantity);
+        ck_answer_number(answer, entry->wanted);
+        ck_answer_text(answer, entry->unit);
+        ck_answer_text(answer, entry->native_parameter);
+        ck_answer_number(answer, entry->native_value);
+        ck_answer_text(answer, ck_match_names[entry->match]);
+        ck_answer_text(answer, entry->formula);
     }
+}
+
+static void show(ck_Answer *answer, const ck_Comparison *comparison) {
+    ck_answer_summary(answer, comparison);
+    ck_answer_cheapest(answer, comparison);
+    for (int i = 0; i < comparison->run_count; i++) show_ledger(answer, &comparison->runs[i]);
 }
 
 static int run(const ck_Command *command, int argc, char **argv) {
@@ -30,11 +44,12 @@ static int run(const ck_Command *command, int argc, char **argv) {
                          arguments.scene_count);
     // it is only written to CSVs
     if (!arguments.out) arguments.options.consistency_budget = 0;
-    int result = status ? ck_command_fail(status, &error) : ck_command_study(&arguments, show);
-    if (result == CK_EXIT_OK)
-        printf("\nNext: clothcheck compare %s --out out, then clothcheck report out\n", arguments.scenes[0]);
-    ck_arguments_free(&arguments);
-    return result;
+    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status) ck_answer_gap(&arguments.answer);
+    if (!status)
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck compare %s --out out, then clothcheck report out",
+                       arguments.scenes[0]);
+    return ck_command_end(&arguments, status, &error);
 }
 
 const ck_Command ck_command_run = {
@@ -42,7 +57,8 @@ const ck_Command ck_command_run = {
     .arguments = "SCENE",
     .about = "one scene, chosen engines: summary and ledger; CSVs with --out",
     .help = "Runs one scene and prints a summary and what each engine made of the scene.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS | CK_TAKES_KEEPING,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS |
+              CK_TAKES_KEEPING,
     .seconds = 900,
     .patience = 10,
     .run = run,

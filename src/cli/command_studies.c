@@ -23,7 +23,8 @@ static ck_Status run_precision(const ck_StudyCommand *command, ck_Error *error) 
     if (!status) ck_precision_write(&precision, rows, &csv, &summary);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) status = ck_csv_close(&summary, error);
-    if (!status) status = ck_print_precision(command->arguments->out, command->comparison->model.name, error);
+    if (!status)
+        status = ck_answer_precision(command->answer, command->arguments->out, command->comparison->model.name, error);
     if (!status) ck_study_command_done(command, &study, "precision.csv, precision_summary.csv");
     ck_csv_discard(&csv);
     ck_csv_discard(&summary);
@@ -43,7 +44,8 @@ const ck_Command ck_command_precision = {
     .help = "Runs every engine over time steps from an eighth to sixteen times as many substeps as its rule takes, and "
             "over\niterations; writes precision.csv with error, cost and the Pareto front, and precision_summary.csv "
             "with orders,\nfloors and the cost to reach 10, 1 and 0.1 %.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_TIMING | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_TIMING | CK_TAKES_JOBS |
+              CK_TAKES_SHARD,
     .out = "out",
     .seconds = 3,
     .full_seconds = 20,
@@ -60,7 +62,8 @@ static ck_Status run_stability(const ck_StudyCommand *command, ck_Error *error) 
     if (!status) status = ck_study_command_open(command, &csv, CK_STABILITY, error);
     if (!status) ck_stability_map_write(&map, rows, &csv);
     if (!status) status = ck_csv_close(&csv, error);
-    if (!status) status = ck_print_stability(command->arguments->out, command->comparison->model.name, error);
+    if (!status)
+        status = ck_answer_stability(command->answer, command->arguments->out, command->comparison->model.name, error);
     if (!status) ck_study_command_done(command, &study, "stability.csv");
     ck_csv_discard(&csv);
     free(rows);
@@ -78,7 +81,7 @@ const ck_Command ck_command_stability = {
     .about = "where methods fail: time step against stiffness: stability.csv",
     .help = "Pushes the scene's rest and steps it: a map over time steps, stiffnesses and iterations, and the critical "
             "step by\nbisection to 1 % beside what theory says; writes stability.csv.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD,
     .out = "out",
     .seconds = 10,
     .run = stability,
@@ -107,6 +110,7 @@ static ck_Status run_needs(const ck_StudyCommand *command, ck_Error *error) {
     if (!status) status = ck_study_command_open(command, &csv, CK_NEEDS, error);
     if (!status) ck_needs_write(&needs, rows, &csv);
     if (!status) status = ck_csv_close(&csv, error);
+    if (!status) status = ck_answer_needs(command->answer, arguments->out, command->comparison->model.name, error);
     if (!status) ck_study_command_done(command, &study, "needs.csv");
     ck_csv_discard(&csv);
     free(rows);
@@ -125,27 +129,40 @@ const ck_Command ck_command_needs = {
     .help = "Leaves out one modelled term at a time, and every second particle, and says which of them change any "
             "metric by\nmore than --error (default 0.01), and what each costs; writes needs.csv. The engine is the "
             "first that models all\nthere is, or --engine.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_ERROR,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD |
+              CK_TAKES_ERROR,
     .out = "out",
     .seconds = 60,
     .run = needs,
 };
 
 // Values as a scene file takes them, and which of them the data hardly tell apart.
-static void print_fit(const ck_Fit *fit, const ck_FitOptions *options, const ck_Comparison *comparison) {
-    printf("%-10s %-6s %12s %12s %12s %12s\n", "parameter", "unit", "value", "from", "to (95 %)", "started at");
-    for (int i = 0; i < CK_FIT_PARAMETERS; i++)
-        if (options->varies[i])
-            printf("%-10s %-6s %12.5g %12.5g %12.5g %12.5g\n", ck_fit_names[i], ck_fit_units[i], fit->value[i],
-                   fit->low[i], fit->high[i], fit->start[i]);
-    printf("=> %s: %d numbers, %d runs, %.2g times the uncertainty is left%s\n", comparison->model.name,
-           fit->number_count, fit->evaluations, fit->misfit,
-           fit->misfit > 2 ? ": the model is not what was measured, or the uncertainty is larger" : "");
+static void show_fit(ck_Answer *answer, const ck_Fit *fit, const ck_FitOptions *options,
+                     const ck_Comparison *comparison) {
+    static const ck_AnswerColumn columns[] = {{"parameter", "parameter", -10, NULL},
+                                              {"unit", "unit", -6, NULL},
+                                              {"value", "value", 12, "%.5g"},
+                                              {"low", "from", 12, "%.5g"},
+                                              {"high", "to (95 %)", 12, "%.5g"},
+                                              {"start", "started at", 12, "%.5g"},
+                                              {NULL, NULL, 0, NULL}};
+    ck_answer_table(answer, "fit", NULL, columns);
+    for (int i = 0; i < CK_FIT_PARAMETERS; i++) {
+        if (!options->varies[i]) continue;
+        ck_answer_text(answer, ck_fit_names[i]);
+        ck_answer_text(answer, ck_fit_units[i]);
+        const double numbers[] = {fit->value[i], fit->low[i], fit->high[i], fit->start[i]};
+        for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) ck_answer_number(answer, numbers[k]);
+    }
+    ck_answer_line(answer, CK_ANSWER_SAYS, "%s: %d numbers, %d runs, %.2g times the uncertainty is left%s",
+                   comparison->model.name, fit->number_count, fit->evaluations, fit->misfit,
+                   fit->misfit > 2 ? ": the model is not what was measured, or the uncertainty is larger" : "");
     for (int i = 0; i < CK_FIT_PARAMETERS; i++)
         for (int k = 0; k < i; k++)
             if (options->varies[i] && options->varies[k] && fabs(fit->correlation[i][k]) > 0.98)
-                printf("=> the data hardly tell %s from %s (correlation %.4f): only together are they known\n",
-                       ck_fit_names[i], ck_fit_names[k], fit->correlation[i][k]);
+                ck_answer_line(answer, CK_ANSWER_SAYS,
+                               "the data hardly tell %s from %s (correlation %.4f): only together are they known",
+                               ck_fit_names[i], ck_fit_names[k], fit->correlation[i][k]);
 }
 
 static ck_Status read_fit(ck_FitOptions *options, const ck_StudyCommand *command, ck_Error *error) {
@@ -176,18 +193,20 @@ static ck_Status run_fit(const ck_StudyCommand *command, ck_Error *error) {
     ck_Csv csv = {0};
     ck_Status status = read_fit(&options, command, error);
     if (!status && arguments->points)
-        status = ck_fit_data_read(&data, arguments->points, &command->comparison->model, error);
+        status = ck_recording_read(&data.points, arguments->points, &command->comparison->model, 0, error);
     data.uncertainty = arguments->uncertainty;
     if (!status) status = ck_fit_run(&fit, command->comparison, &data, &options, error);
     if (!status) status = ck_study_command_open(command, &csv, CK_FIT, error);
     if (!status) ck_fit_write(&fit, command->comparison, &options, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) {
-        print_fit(&fit, &options, command->comparison);
-        printf("CSV: %s/fit.csv\nNext: put the values into the scene, and clothcheck compare it\n", arguments->out);
+        show_fit(command->answer, &fit, &options, command->comparison);
+        ck_answer_line(command->answer, CK_ANSWER_FILES, "%s/fit.csv", arguments->out);
+        ck_answer_line(command->answer, CK_ANSWER_NEXT, "put the values into the scene, then clothcheck compare %s",
+                       command->comparison->path);
     }
     ck_csv_discard(&csv);
-    ck_fit_data_free(&data);
+    ck_recording_free(&data.points);
     return status;
 }
 
@@ -203,7 +222,7 @@ const ck_Command ck_command_fit = {
             "closest "
             "to\nwhat was measured: --points FILE, and the scene's own key measured. Each comes with the interval that "
             "the\nmeasurement's uncertainty leaves. The scene's values are the start.",
-    .groups = CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_FIT,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_FIT,
     .out = "out",
     .seconds = 60,
     .run = fit_values,

@@ -34,8 +34,9 @@ static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error 
 static ck_Status set_seed(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error *error);
-static ck_Status read_like(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_markdown(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error);
 
 #define PLACE(member) offsetof(ck_Arguments, member)
@@ -75,8 +76,14 @@ static const Option table[] = {
      .help = "a tolerance, in units of size"},
     {"timeout", "S", 0, CK_TAKES_GOAL, NUMBER, PLACE(timeout), 0, 1e9, .fallback = "60", .is_way = true,
      .help = "wall seconds for the whole search; 0: any"},
-    {"like", "ENGINE", 0, CK_TAKES_GOAL, OTHER, .read = read_like,
-     .help = "come close to that engine's path instead of the truth"},
+    {"stretch", "X", 0, CK_TAKES_GOAL, NUMBER, PLACE(stretch), 1e-12, 1e6,
+     .help = "the largest strain at the end that is fine, as 0.05"},
+    {"max-frame-ms", "MS", 0, CK_TAKES_GOAL, NUMBER, PLACE(frame), 1e-9, 1e9,
+     .help = "CPU milliseconds that 1/60 s of the scene may cost"},
+    {"like", "ENGINE|FILE", 0, CK_TAKES_GOAL, TEXT, PLACE(like),
+     .help = "come close to that engine's path, or to a recorded one, instead of the truth"},
+    {"target", "METRIC=VALUE", 0, CK_TAKES_GOAL, TEXT, PLACE(target),
+     .help = "come close to that value instead, as sag=0.12, or sag=0.3m in metres"},
     {"vary", "KEY", 0, CK_TAKES_GOAL | CK_TAKES_FIT, OTHER, .read = add_variable,
      .help = "what is searched for: of tune stiffness, compliance or kLST, of fit stiffness, damping or drag; may be "
              "given several times"},
@@ -92,6 +99,9 @@ static const Option table[] = {
      .help = "keep the results of other scenes that --out holds; of tune, of other engines, too"},
     {"force", NULL, 'f', CK_TAKES_KEEPING, FLAG, PLACE(forces), .is_way = true,
      .help = "replace whatever results --out holds"},
+    {"json", NULL, 0, CK_TAKES_FORM, OTHER, .read = set_json, .is_way = true, .help = "the answer as JSON"},
+    {"markdown", NULL, 0, CK_TAKES_FORM, OTHER, .read = set_markdown, .is_way = true,
+     .help = "the answer as Markdown, as for a pull request"},
     {"rounds", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(rounds), 1, 99, .fallback = "7", .help = "repeats, 1 to 99"},
     {"largest", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(largest), 16, 2048, .fallback = "1024",
      .help = "side of the largest cloth, 16 to 2048"},
@@ -173,11 +183,6 @@ static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error
     return found ? CK_OK : fail_engine(text, error);
 }
 
-static ck_Status read_like(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    arguments->like = ck_engine_find(text);
-    return arguments->like ? CK_OK : fail_engine(text, error);
-}
-
 static ck_Status fail_unknown_key(const char *text, const char *key, const ck_Engine *engine, ck_Error *error) {
     char known[200], hint[80];
     return ck_fail(error, CK_BAD_INPUT, "--set %s: %s has no %s%s; it has %s", text, engine->name, key,
@@ -253,6 +258,23 @@ static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error 
         arguments->shard >= 1 && arguments->shard <= arguments->shards && arguments->shards <= 10000)
         return CK_OK;
     return ck_fail(error, CK_BAD_INPUT, "--shard %s: it must read I/N with 1 <= I <= N, as in 2/4", text);
+}
+
+static ck_Status set_form(ck_Arguments *arguments, ck_AnswerForm form, ck_Error *error) {
+    if (arguments->answer.form && arguments->answer.form != form)
+        return ck_fail(error, CK_BAD_INPUT, "--json and --markdown: an answer has one form; give one of them");
+    arguments->answer.form = form;
+    return CK_OK;
+}
+
+static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    (void)text;
+    return set_form(arguments, CK_ANSWER_JSON, error);
+}
+
+static ck_Status set_markdown(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    (void)text;
+    return set_form(arguments, CK_ANSWER_MARKDOWN, error);
 }
 
 static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Error *error) {
@@ -344,6 +366,8 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
                             ck_Error *error) {
     *arguments = (ck_Arguments){.options = ck_compare_options_default(),
                                 .error = NAN,
+                                .stretch = NAN,
+                                .frame = NAN,
                                 .timeout = 60,
                                 .uncertainty = 0.0003,
                                 .rounds = 7,
@@ -370,6 +394,7 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
         if (!status && !option->is_way) status = add_to_question(arguments, option->name, optarg, error);
     }
     for (int i = optind; i < argc && !status; i++) status = add_word(arguments, command, argv[i], error);
+    ck_answer_open(&arguments->answer, arguments->answer.form, command->name);
     return status;
 }
 
@@ -377,5 +402,6 @@ void ck_arguments_free(ck_Arguments *arguments) {
     for (int i = 0; i < arguments->scene_count; i++) free(arguments->scenes[i]);
     for (int i = 0; i < arguments->validate_count; i++) free(arguments->validate[i]);
     free(arguments->scenes);
+    ck_answer_discard(&arguments->answer);
     *arguments = (ck_Arguments){0};
 }

@@ -44,12 +44,14 @@ int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, 
     int failed = status ? 0 : ck_path_make(arguments.out);
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", arguments.out, strerror(failed));
     ck_StudyCommand study = {.arguments = &arguments,
+                             .answer = &arguments.answer,
                              .comparison = &comparison,
                              .kept = {arguments.out, &comparison, 1, &arguments.options, layout == CK_TUNE}};
     if (!status && !arguments.forces)
         status = ck_kept_check(&study.kept, &ck_layouts[layout], arguments.appends, &error);
     // before anything that takes time
-    if (!status && layout == CK_TUNE && !arguments.like) status = ck_tune_check(&comparison, arguments.error, &error);
+    if (!status && layout == CK_TUNE && !arguments.like && !arguments.target)
+        status = ck_tune_check(&comparison, arguments.error, &error);
     if (!status) status = find_truth(&comparison, &arguments, &error);
     if (!status) {
         write_question(&study);
@@ -57,8 +59,7 @@ int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, 
     }
     if (!status) status = ck_machine_save(arguments.out, &error);
     ck_comparison_free(&comparison);
-    ck_arguments_free(&arguments);
-    return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
+    return ck_command_end(&arguments, status, &error);
 }
 
 static ck_StudyOptions options_of(const ck_StudyCommand *command, int jobs) {
@@ -79,5 +80,6 @@ ck_Status ck_study_command_run(const ck_StudyCommand *command, const ck_Study *s
 void ck_study_command_done(const ck_StudyCommand *command, const ck_Study *study, const char *files) {
     const ck_StudyOptions options = options_of(command, 1);
     if (options.shards <= 1) ck_study_forget(study, &options);
-    printf("CSVs: %s/{%s}\nNext: clothcheck report %s\n", options.directory, files, options.directory);
+    ck_answer_line(command->answer, CK_ANSWER_FILES, "%s/{%s}", options.directory, files);
+    ck_answer_line(command->answer, CK_ANSWER_NEXT, "clothcheck report %s", options.directory);
 }

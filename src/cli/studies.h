@@ -8,6 +8,7 @@
 
 typedef struct ck_StudyCommand {
     const ck_Arguments *arguments;
+    ck_Answer *answer;
     const ck_Comparison *comparison; // with its truth
     char question[2400];
     ck_Kept kept;

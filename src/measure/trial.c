@@ -11,23 +11,30 @@ static double error_of(const char *metric, const ck_Run *run, const ck_Reference
                 ck_metric_truth(of, run->model, reference));
 }
 
-static void measure(ck_Trial *trial, const ck_Run *run, const ck_Reference *reference, const ck_Trajectory *against) {
+static double distance_of(const ck_TrialGoal *goal, const ck_Run *run, const ck_Reference *truth) {
     const ck_Metric *position = ck_metric_find("position_rms");
-    trial->error = against ? ck_metric_deviation(position, run->model, &run->trajectory, against, reference)
-                           : ck_metric_value(position, run->model, &run->trajectory, reference);
-    trial->sag_error = error_of("sag", run, reference);
-    trial->stretch_error = error_of("stretch_max", run, reference);
+    if (goal->metric) return fabs(ck_metric_value(goal->metric, run->model, &run->trajectory, truth) - goal->value);
+    return goal->path ? ck_metric_deviation(position, run->model, &run->trajectory, goal->path, truth)
+                      : ck_metric_value(position, run->model, &run->trajectory, truth);
 }
 
-ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Reference *truth, const ck_Trajectory *against,
+static void measure(ck_Trial *trial, const ck_Run *run, const ck_Reference *truth, const ck_TrialGoal *goal) {
+    trial->error = distance_of(goal ? goal : &(ck_TrialGoal){0}, run, truth);
+    trial->stretch = ck_metric_value(ck_metric_find("stretch_max"), run->model, &run->trajectory, truth);
+    trial->sag_error = error_of("sag", run, truth);
+    trial->stretch_error = error_of("stretch_max", run, truth);
+}
+
+ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Reference *truth, const ck_TrialGoal *goal,
                        const ck_Engine *engine, const ck_Settings *wanted, int repeats, const ck_Limits *limits,
                        ck_Error *error) {
-    *trial = (ck_Trial){.error = NAN, .sag_error = NAN, .stretch_error = NAN, .cpu = NAN, .cpu_range = NAN};
+    *trial =
+        (ck_Trial){.error = NAN, .stretch = NAN, .sag_error = NAN, .stretch_error = NAN, .cpu = NAN, .cpu_range = NAN};
     ck_Run run = {0};
     ck_Status status = ck_verdict_run(&run, model, truth, engine, wanted, limits, error);
     bool has_path = !status && ck_run_has_all_frames(&run);
     if (has_path) {
-        measure(trial, &run, truth, against);
+        measure(trial, &run, truth, goal);
         trial->cpu = run.measured_cpu;
         int most = repeats < 0 ? CK_MAX_REPEATS : repeats;
         for (int i = 0; i < most && !status && (repeats > 0 || !ck_timing_is_known(&run.timing, CK_TIMING_ENOUGH)); i++)

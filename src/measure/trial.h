@@ -10,17 +10,25 @@ typedef struct ck_Trial {
     char reason[256];
     ck_Settings used;
     double time_step;      // s
-    double error;          // distance to the truth's positions, rms over particles and frames / size
+    double error;          // from the goal
+    double stretch;        // the largest strain at the end
     double sag_error;      // at the end, |sag − truth|
     double stretch_error;  // at the end, |stretch_max − truth|
     double cpu, cpu_range; // s, median and interquartile range
 } ck_Trial;
 
+// What a trial's error is. None of it: the distance to the truth's positions, rms over particles and frames / size.
+typedef struct ck_TrialGoal {
+    const ck_Trajectory *path; // the distance to this path, of the same model's frames
+    const ck_Metric *metric;   // or how far this metric is from value, in its unit
+    double value;
+} ck_TrialGoal;
+
 // Runs and judges; times it repeats times, 0: the measured pass alone, below 0: until it is
 // known. What a failed run lacks is NaN.
-//   against  NULL, or positions to measure error against in place of the truth's, of the same model's frames
+//   goal  NULL: the truth
 // Errors: CK_NO_MEMORY, CK_IO.
-ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Reference *truth, const ck_Trajectory *against,
+ck_Status ck_trial_run(ck_Trial *trial, const ck_Model *model, const ck_Reference *truth, const ck_TrialGoal *goal,
                        const ck_Engine *engine, const ck_Settings *wanted, int repeats, const ck_Limits *limits,
                        ck_Error *error);
 

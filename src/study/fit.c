@@ -1,7 +1,5 @@
 #include "fit.h"
 
-#include "files.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,26 +41,24 @@ static int add_scalar(const ck_SceneMeasure *measured, const char *metric, doubl
     return 1;
 }
 
-// Where a particle is between frames, by the cubic that has their velocities, too.
 static void place_at(const ck_Trajectory *path, double time, int particle, double *at) {
     int last = path->frame_count - 1, frame = (int)fmin(fmax(0, floor(time / path->step + 1e-9)), last);
     double h = path->step, t = frame < last ? time / h - frame : 0;
     int next = frame < last ? frame + 1 : frame;
     for (int axis = 0; axis < 3; axis++) {
-        double x = ck_trajectory_position(path, frame)[3 * particle + axis],
-               y = ck_trajectory_position(path, next)[3 * particle + axis],
-               v = ck_trajectory_velocity(path, frame)[3 * particle + axis],
-               w = ck_trajectory_velocity(path, next)[3 * particle + axis];
-        at[axis] = x * (1 + t * t * (2 * t - 3)) + y * t * t * (3 - 2 * t) + h * t * (1 - t) * ((1 - t) * v - t * w);
+        int i = 3 * particle + axis;
+        at[axis] = ck_between(ck_trajectory_position(path, frame)[i], ck_trajectory_velocity(path, frame)[i],
+                              ck_trajectory_position(path, next)[i], ck_trajectory_velocity(path, next)[i], h, t, NULL);
     }
 }
 
 static void compare_path(const Problem *problem, const ck_Model *model, const ck_Trajectory *path, double *left) {
     const ck_FitData *data = problem->data;
+    const ck_RecordedPoint *points = data->points.points;
     const ck_SceneMeasured *measured = problem->comparison->scene.file->measured;
-    for (int i = 0; i < data->point_count; i++, left += 3) {
-        place_at(path, data->points[i].time, data->points[i].particle, left);
-        for (int axis = 0; axis < 3; axis++) left[axis] = (left[axis] - data->points[i].at[axis]) / data->uncertainty;
+    for (int i = 0; i < data->points.point_count; i++, left += 3) {
+        place_at(path, points[i].time, points[i].particle, left);
+        for (int axis = 0; axis < 3; axis++) left[axis] = (left[axis] - points[i].at[axis]) / data->uncertainty;
     }
     if (!measured) return;
     left += add_scalar(measured->sag, "sag", model->size, model, path, left);
@@ -230,7 +226,7 @@ static ck_Status conclude(ck_Fit *fit, const Problem *problem, const double *x, 
 static ck_Status prepare(Problem *problem, ck_Fit *fit, ck_Error *error) {
     const ck_Comparison *comparison = problem->comparison;
     const ck_SceneMeasured *measured = comparison->scene.file->measured;
-    problem->numbers = 3 * problem->data->point_count;
+    problem->numbers = 3 * problem->data->points.point_count;
     if (measured) problem->numbers += !!measured->sag + !!measured->stretch_max + !!measured->period;
     if (!problem->numbers)
         return ck_fail(
@@ -285,47 +281,4 @@ void ck_fit_write(const ck_Fit *fit, const ck_Comparison *comparison, const ck_F
         ck_csv_number(csv, fit->start[i]);
         ck_csv_number(csv, fit->misfit);
     }
-}
-
-void ck_fit_data_free(ck_FitData *data) {
-    free(data->points);
-    *data = (ck_FitData){0};
-}
-
-static ck_Status read_point(ck_FitData *data, const char *path, int line, const char *text, const ck_Model *model,
-                            ck_Error *error) {
-    ck_FitPoint point;
-    int used = 0;
-    if (sscanf(text, "%lf,%d,%lf,%lf,%lf%n", &point.time, &point.particle, &point.at[0], &point.at[1], &point.at[2],
-               &used) != 5 ||
-        text[used + (text[used] == '\r')])
-        return ck_fail(error, CK_BAD_INPUT, "%s:%d: '%.60s' must be five numbers: time_s,particle,x,y,z", path, line,
-                       text);
-    if (point.particle < 0 || point.particle >= model->particle_count)
-        return ck_fail(error, CK_BAD_INPUT, "%s:%d: particle is %d; the scene has 0 to %d", path, line, point.particle,
-                       model->particle_count - 1);
-    if (!(point.time >= 0 && point.time <= model->duration))
-        return ck_fail(error, CK_BAD_INPUT, "%s:%d: time_s is %g; the scene goes from 0 to %g s", path, line,
-                       point.time, model->duration);
-    ck_FitPoint *more = realloc(data->points, sizeof *more * (size_t)(data->point_count + 1));
-    if (!more) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    data->points = more;
-    data->points[data->point_count++] = point;
-    return CK_OK;
-}
-
-ck_Status ck_fit_data_read(ck_FitData *data, const char *path, const ck_Model *model, ck_Error *error) {
-    char *text = NULL, *rest;
-    size_t size;
-    int line = 0;
-    ck_Status status = ck_file_read(&text, &size, path, error);
-    if (!status) rest = text;
-    for (char *row; !status && (row = strsep(&rest, "\n"));) {
-        line++;
-        if (line == 1 && strncmp(row, "time_s,particle,x,y,z", 21))
-            status = ck_fail(error, CK_BAD_INPUT, "%s:1: the header must be time_s,particle,x,y,z", path);
-        if (!status && line > 1 && *row && strcmp(row, "\r")) status = read_point(data, path, line, row, model, error);
-    }
-    free(text);
-    return status;
 }

@@ -5,29 +5,18 @@
 
 #include "comparison.h"
 #include "csv_writer.h"
+#include "recording.h"
 
 // What may be fitted: all of them scale what the scene gives as a start.
 typedef enum ck_FitParameter { CK_FIT_STIFFNESS, CK_FIT_DAMPING, CK_FIT_DRAG, CK_FIT_PARAMETERS } ck_FitParameter;
 extern const char *const ck_fit_names[CK_FIT_PARAMETERS]; // as in --vary
 extern const char *const ck_fit_units[CK_FIT_PARAMETERS];
 
-// Where a particle was seen.
-typedef struct ck_FitPoint {
-    double time; // s
-    int particle;
-    double at[3]; // m
-} ck_FitPoint;
-
+// The rest of the scene's measurement is its key measured.
 typedef struct ck_FitData {
-    ck_FitPoint *points;
-    int point_count;
-    double uncertainty; // m, standard, of each coordinate
+    ck_Recording points; // some particles at some times
+    double uncertainty;  // m, standard, of each coordinate
 } ck_FitData;
-
-// Reads points from a CSV file: time_s, particle, x, y, z, with this header. The rest of the scene's measurement is its
-// key measured. Errors: CK_BAD_INPUT with file and line, CK_IO, CK_NO_MEMORY. Free with ck_fit_data_free in any case.
-ck_Status ck_fit_data_read(ck_FitData *data, const char *path, const ck_Model *model, ck_Error *error);
-void ck_fit_data_free(ck_FitData *data);
 
 typedef struct ck_FitOptions {
     const ck_Engine *engine; // NULL: the scene's truth

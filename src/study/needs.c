@@ -292,10 +292,9 @@ static double change_of(const ck_Metric *metric, double with, double without) {
     return scale > 0 ? fabs(without - with) / scale : 0;
 }
 
-static bool add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, ck_Csv *csv, const char *metric,
+static void add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, ck_Csv *csv, const char *metric,
                     const char *unit, double with, double without, double change) {
     bool matters = change > needs->tolerance;
-    if (isnan(change) && *metric) return false;
     ck_csv_text(csv, needs->comparison->model.name);
     ck_csv_text(csv, needs->engine->name);
     ck_csv_text(csv, needs->cases[index].name);
@@ -310,40 +309,22 @@ static bool add_row(const ck_Needs *needs, const ck_JournalRow *row, int index, 
     ck_csv_number(csv, row->values[CPU]);
     ck_csv_text(csv, ck_run_status_names[row->status]);
     ck_csv_text(csv, row->reason);
-    return matters;
 }
 
 void ck_needs_write(const ck_Needs *needs, const ck_JournalRow *rows, ck_Csv *csv) {
     for (int i = 0; i < needs->case_count; i++) {
-        if (!rows[i].is_done) continue;
-        if (rows[i].status == CK_RUN_REFUSED) {
-            add_row(needs, &rows[i], i, csv, "", "", NAN, NAN, NAN);
-            printf("%-24s %s\n", needs->cases[i].name, rows[i].reason);
-            continue;
-        }
-        char changed[400] = "";
-        size_t used = 0;
-        for (int k = 0; k < ck_metric_count(); k++) {
+        bool has_row = false;
+        for (int k = 0; k < ck_metric_count() && rows[i].is_done && rows[i].status != CK_RUN_REFUSED; k++) {
             const ck_Metric *metric = ck_metric_at(k);
             double with = needs->whole.values[k], without = rows[i].values[METRICS + k];
             bool is_distance = !strcmp(metric->name, "position_rms");
-            if (!ck_metric_is_wanted(metric, &needs->comparison->model)) continue;
             double change = is_distance ? rows[i].values[DISTANCE] : change_of(metric, with, without);
-            if (!add_row(needs, &rows[i], i, csv, metric->name, metric->unit, is_distance ? NAN : with,
-                         is_distance ? NAN : without, change) ||
-                used >= sizeof changed)
-                continue;
-            const char *separator = used ? ", " : "";
-            used += (size_t)(isinf(change) ? snprintf(changed + used, sizeof changed - used, "%s%s (has none %s)",
-                                                      separator, metric->name, isnan(with) ? "with" : "without")
-                                           : snprintf(changed + used, sizeof changed - used, "%s%s by %.2g", separator,
-                                                      metric->name, change));
+            if (!ck_metric_is_wanted(metric, &needs->comparison->model) || isnan(change)) continue;
+            add_row(needs, &rows[i], i, csv, metric->name, metric->unit, is_distance ? NAN : with,
+                    is_distance ? NAN : without, change);
+            has_row = true;
         }
-        bool has_failed = isnan(rows[i].values[CPU]);
-        printf("%-24s %s%s (CPU %.3g s with, %.3g s without)\n", needs->cases[i].name,
-               has_failed ? "is needed to run at all: "
-               : used     ? "is needed: changes "
-                          : "is not needed",
-               has_failed ? rows[i].reason : changed, needs->whole.cpu, rows[i].values[CPU]);
+        // refused or failed: the reason says why
+        if (rows[i].is_done && !has_row) add_row(needs, &rows[i], i, csv, "", "", NAN, NAN, NAN);
     }
 }

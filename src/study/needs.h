@@ -35,7 +35,7 @@ void ck_needs_free(ck_Needs *needs);
 
 ck_Study ck_needs_study(const ck_Needs *needs);
 
-// Adds a row a case and metric; prints what the scene needs and what it does not.
+// Adds a row a case and metric.
 void ck_needs_write(const ck_Needs *needs, const ck_JournalRow *rows, ck_Csv *csv);
 
 // The names of the values of its journal; signature of ck_ValueName.

@@ -2,6 +2,7 @@
 
 #include "statistics.h"
 #include "trial.h"
+#include "vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -216,6 +217,35 @@ static void summarise_costs(const ck_Precision *precision, const ck_JournalRow *
     }
 }
 
+// The rounding of a position, against what the field moves it by in a step, g*h^2: from 1 on nothing moves. NaN without
+// a field.
+static double rounding_at(const ck_Model *model, double dt) {
+    double field[3], farthest = 0;
+    ck_model_mean_field(model, field);
+    for (int i = 0; i < 3 * model->particle_count; i++) farthest = fmax(farthest, fabs(model->position[i]));
+    return ck_length(field) > 0 ? farthest * 0x1p-52 / (ck_length(field) * dt * dt) : NAN;
+}
+
+// From how many substeps on finer steps make it worse: by half as much again, which the truth can tell.
+static void summarise_finest(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
+                             ck_Csv *csv) {
+    int best = -1, finest = -1;
+    for (int i = 0; i < precision->case_count; i++) {
+        if (precision->cases[i].engine != engine || !precision->cases[i].is_ladder || !counts(&rows[i])) continue;
+        if (best < 0 || rows[i].values[ERROR] < rows[best].values[ERROR]) best = i;
+        finest = i;
+    }
+    double least = best < 0 ? NAN : fmax(rows[best].values[ERROR], precision->uncertainty);
+    if (best < 0 || !(rows[finest].values[ERROR] > 1.5 * least)) return;
+    char reason[200];
+    double rounding = rounding_at(&precision->comparison->model, rows[finest].values[DT]);
+    bool is_rounding = rounding > 0.1 * rows[finest].values[ERROR];
+    snprintf(reason, sizeof reason, "finer steps make it worse, up to %.2g: %s, which comes to %.1g there",
+             rows[finest].values[ERROR], is_rounding ? "rounding from here on" : "by its method, not by rounding",
+             rounding);
+    add_summary(precision, csv, engine, "finest_useful_substeps", "1", rows[best].values[SUBSTEPS], NAN, reason);
+}
+
 void ck_precision_write(const ck_Precision *precision, const ck_JournalRow *rows, ck_Csv *csv, ck_Csv *summary) {
     const ck_Engine *last = NULL;
     for (int i = 0; i < precision->case_count; i++)
@@ -226,5 +256,6 @@ void ck_precision_write(const ck_Precision *precision, const ck_JournalRow *rows
         last = engine;
         summarise_order(precision, rows, engine, summary);
         summarise_costs(precision, rows, engine, summary);
+        summarise_finest(precision, rows, engine, summary);
     }
 }

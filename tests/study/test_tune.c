@@ -4,6 +4,7 @@
 
 #include "tune_grid.h"
 
+#include <jansson.h>
 #include <unistd.h>
 
 typedef struct Landscape {
@@ -169,10 +170,84 @@ static void test_unreachable(void **state) {
     }
 }
 
+// Runs tune with --json; the row of its front that was chosen, of a document that the caller frees.
+static json_t *tune(const char *arguments, json_t **document) {
+    char line[600];
+    snprintf(line, sizeof line, "tune %s --json --force --out %s/goal", arguments, fixture_directory);
+    if (fixture_program(line)) fail_msg("%s fails", line);
+    char *text = fixture_read("output");
+    json_error_t error;
+    *document = json_loads(text, 0, &error);
+    if (!*document) fail_msg("%s: %s in %s", line, error.text, text);
+    free(text);
+    json_t *row;
+    size_t i;
+    json_array_foreach(json_object_get(*document, "front"), i, row) {
+        if (!strcmp(json_string_value(json_object_get(row, "chosen")), "chosen")) return row;
+    }
+    fail_msg("%s: nothing is chosen", line);
+    return NULL;
+}
+
+static double number_of(const json_t *row, const char *key) {
+    return json_number_value(json_object_get(row, key));
+}
+
+// A bound of strain, a value to come to, a cost to stay within.
+static void test_goals(void **state) {
+    (void)state;
+    json_t *document, *row = tune("rope_hanging -e bullet-pbd --stretch 0.12", &document);
+    assert_true(number_of(row, "stretch_max") <= 0.12);
+    double work = number_of(row, "sweeps_per_s");
+    json_decref(document);
+    // the cheapest of less strain cannot be cheaper
+    row = tune("rope_hanging -e bullet-pbd --stretch 0.1", &document);
+    assert_true(number_of(row, "stretch_max") <= 0.1 && number_of(row, "sweeps_per_s") >= work);
+    json_decref(document);
+    // a share of each link's error is what makes it softer: any sag between is to be had
+    row = tune("rope_hanging -e bullet-pbd --target sag=1.2 --vary kLST", &document);
+    assert_true(number_of(row, "error") < 1e-3);
+    json_decref(document);
+    row = tune("rope_hanging -e native-xpbd --max-frame-ms 1000", &document);
+    assert_true(number_of(row, "cpu_ms_per_frame") <= 1000 && number_of(row, "error") < 1e-4);
+    json_decref(document);
+}
+
+// Two particles that fall for 0.5 s, recorded at every second frame. Symplectic Euler's error is g*t*h/2: of rms
+// g*T*h/(2*sqrt(3)) over the way.
+static void test_like_a_file(void **state) {
+    (void)state;
+    char *scene = fixture_file("name: falling\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}], "
+                               "bars: [[0, 1]]}\nsprings: {stiffness: 100}\ngravity: [0, -9.81, 0]\n"
+                               "time: {duration: 0.5, step: 0.0125}\n");
+    char text[4000] = "time_s,particle,x,y,z\n", arguments[400];
+    size_t used = strlen(text);
+    for (int frame = 0; frame <= 40; frame += 2)
+        for (int particle = 0; particle < 2; particle++)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%.9g,%d,%d,%.12g,0\n", 0.0125 * frame, particle,
+                                     particle, -0.5 * 9.81 * 0.0125 * frame * 0.0125 * frame);
+    char *path = fixture_file(text);
+    double of_one = 9.81 * 0.5 * 0.0125 / (2 * sqrt(3));
+    json_t *document, *row;
+    snprintf(arguments, sizeof arguments, "%s -e bullet-pbd --like %s --error %.9g", scene, path, 1.02 * of_one / 8);
+    row = tune(arguments, &document);
+    assert_near("substeps", number_of(row, "substeps"), 8, 0);
+    fixture_assert_output("20 frames interpolated between 21 recorded ones");
+    json_decref(document);
+    snprintf(arguments, sizeof arguments, "tune %s -e bullet-pbd --like nobody", scene);
+    assert_int_equal(fixture_program(arguments), 2);
+    fixture_assert_output("there is no such engine, and no such file");
+    for (char **file = (char *[]){scene, path, NULL}; *file; file++) {
+        unlink(*file);
+        free(*file);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),    cmocka_unit_test(test_lucky),   cmocka_unit_test(test_no_iterations),
-        cmocka_unit_test(test_program), cmocka_unit_test(test_refused), cmocka_unit_test(test_unreachable),
+        cmocka_unit_test(test_grid),    cmocka_unit_test(test_lucky),       cmocka_unit_test(test_no_iterations),
+        cmocka_unit_test(test_program), cmocka_unit_test(test_refused),     cmocka_unit_test(test_unreachable),
+        cmocka_unit_test(test_goals),   cmocka_unit_test(test_like_a_file),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

@@ -54,11 +54,29 @@ static double count_cheaper(const ck_TuneGrid *grid) {
     return count * grid->variant_count;
 }
 
+#define MOST_AHEAD 64
+
+// Calls each pair of less work than best, the cheapest first, until one meets the tolerance.
+static void exhaust(ck_TuneGrid *grid, double best) {
+    ck_TunePair ahead[MOST_AHEAD];
+    int most = grid->batch < MOST_AHEAD ? grid->batch : MOST_AHEAD, count = 0;
+    if (most < 1) most = 1;
+    for (uint32_t work = 2; work < best; work++)
+        for (uint32_t iterations = 1; iterations < work && iterations <= most_iterations(grid); iterations++) {
+            if (work % (iterations + 1)) continue;
+            ahead[count++] = (ck_TunePair){work / (iterations + 1), iterations};
+            if (count < most) continue;
+            if (most > 1) grid->try_ahead(grid->context, ahead, count);
+            for (int i = 0; i < count; i++)
+                if (try_pair(grid, ahead[i].substeps, ahead[i].iterations)) return;
+            count = 0;
+        }
+    for (int i = 0; i < count; i++)
+        if (try_pair(grid, ahead[i].substeps, ahead[i].iterations)) return;
+}
+
 bool ck_tune_grid_exhaust(ck_TuneGrid *grid) {
     if (grid->tries + count_cheaper(grid) > grid->most_tries) return false;
-    double best = grid->work;
-    for (uint32_t work = 2; work < best; work++)
-        for (uint32_t iterations = 1; iterations < work && iterations <= most_iterations(grid); iterations++)
-            if (work % (iterations + 1) == 0 && try_pair(grid, work / (iterations + 1), iterations)) return true;
+    exhaust(grid, grid->work);
     return true;
 }

@@ -5,6 +5,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+typedef struct ck_TunePair {
+    uint32_t substeps, iterations;
+} ck_TunePair;
+
 typedef struct ck_TuneGrid {
     bool has_iterations; // of the solver; else substeps alone are searched
     int variant_count;   // of what else is tried at each pair
@@ -13,6 +17,9 @@ typedef struct ck_TuneGrid {
     int tries, most_tries;
     // Runs one; true where it meets the tolerance.
     bool (*meets)(void *context, uint32_t substeps, uint32_t iterations, int variant);
+    // Runs those that are soon asked for, side by side, batch of them at most; batch at most 1: never.
+    void (*try_ahead)(void *context, const ck_TunePair *pairs, int count);
+    int batch;
     void *context;
 } ck_TuneGrid;
 
