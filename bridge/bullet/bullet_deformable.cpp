@@ -16,6 +16,8 @@
 #include <btBulletDynamicsCommon.h>
 #include <cmath>
 
+extern "C" const char ck_code_bullet_deformable[];
+
 namespace {
 
 class World : public btDeformableMultiBodyDynamicsWorld {
@@ -284,6 +286,25 @@ void destroy(void *state) {
     delete static_cast<DeformableState *>(state);
 }
 
+ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, bool is_implicit) {
+    code->text = ck_code_bullet_deformable;
+    code->extension = "cpp";
+    ck_code_number(code, "margin", ck_bullet_margin(&scaled->model));
+    ck_code_part(code, "is_implicit", is_implicit);
+    ck_code_text(code, "implicit", is_implicit ? "true" : "false");
+    ck_code_text(code, "obstacles", "cloth->obstacles");
+    ck_code_text(code, "world", "*cloth->world");
+    return CK_OK;
+}
+
+ck_Status code_implicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Settings *, ck_Error *) {
+    return code(out, scaled, true);
+}
+
+ck_Status code_explicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Settings *, ck_Error *) {
+    return code(out, scaled, false);
+}
+
 const unsigned terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
                        CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE;
 
@@ -339,6 +360,7 @@ extern "C" const ck_Engine ck_bullet_implicit = {
     .contact = nullptr,
     .remark = remark,
     .destroy = destroy,
+    .code = code_implicit,
 };
 
 extern "C" const ck_Engine ck_bullet_explicit = {
@@ -359,4 +381,5 @@ extern "C" const ck_Engine ck_bullet_explicit = {
     .contact = nullptr,
     .remark = remark,
     .destroy = destroy,
+    .code = code_explicit,
 };

@@ -5,6 +5,7 @@
 #include "bullet_contact.hpp"
 #include "collider.h"
 #include "engine.h"
+#include "sweep_order.h"
 #include "time_scale.h"
 
 #include <BulletSoftBody/btDefaultSoftBodySolver.h>
@@ -13,6 +14,10 @@
 #include <algorithm>
 #include <btBulletDynamicsCommon.h>
 #include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+extern "C" const char ck_code_bullet_pbd[];
 
 namespace {
 
@@ -354,6 +359,28 @@ void destroy(void *state) {
     delete static_cast<ClassicState *>(state);
 }
 
+ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, const ck_Settings *used, ck_Error *error) {
+    const ck_Model *model = &scaled->model;
+    bool corrects = !(used->softness > 0) && !(model->terms & CK_TERM_RIGID);
+    code->text = ck_code_bullet_pbd;
+    code->extension = "cpp";
+    ck_code_number(code, "kdp", speed_taken(model, *used));
+    ck_code_number(code, "share", used->softness);
+    ck_code_number(code, "apart", substeps_apart(model, model->step / used->substeps));
+    ck_code_number(code, "margin", ck_bullet_margin(model));
+    ck_code_part(code, "softness", used->softness > 0);
+    ck_code_part(code, "corrects", corrects);
+    ck_code_part(code, "prepares", corrects || model->terms & CK_TERM_DAMPING);
+    ck_code_text(code, "obstacles", "cloth->around->obstacles");
+    ck_code_text(code, "world", "cloth->around->world");
+    if (!(ck_settings_own(used, OWN_REORDERED, 0) > 0)) return CK_OK;
+    code->order = static_cast<int *>(std::malloc(sizeof(int) * static_cast<size_t>(model->spring_count) + 1));
+    if (!code->order) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    std::iota(code->order, code->order + model->spring_count, 0);
+    ck_Status status = ck_sweep_order(model, CK_PROJECT_SPRINGS, code->order);
+    return status ? ck_fail(error, status, "out of memory") : CK_OK;
+}
+
 const ck_Setting settings[] = {
     {.name = "substeps",
      .slot = CK_SUBSTEPS,
@@ -420,4 +447,5 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .contact = nullptr,
     .remark = nullptr,
     .destroy = destroy,
+    .code = code,
 };

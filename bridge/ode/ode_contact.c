@@ -13,17 +13,22 @@
 // The most of a ball's radius that a step may go for the ball to be as good as a plane.
 #define SMALL_STEP 0.05
 
+double ck_ode_push_speed(const ck_Model *model) {
+    double field[3];
+    ck_model_mean_field(model, field);
+    return ck_length(field) > 0 ? PUSH_SPEED * sqrt(ck_length(field) * model->size) : INFINITY;
+}
+
 ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *model, double h, ck_Error *error) {
     *contacts = NULL;
     if (!model->collider_count) return CK_OK;
     ck_OdeContacts *made = calloc(1, sizeof *made);
     size_t most = (size_t)model->particle_count * (size_t)model->collider_count;
-    double field[3];
-    ck_model_mean_field(model, field);
-    double push_speed = ck_length(field) > 0 ? PUSH_SPEED * sqrt(ck_length(field) * model->size) : INFINITY;
     if (made)
-        *made = (ck_OdeContacts){
-            .model = model, .h = h, .push_speed = push_speed, .feedback = calloc(most, sizeof *made->feedback)};
+        *made = (ck_OdeContacts){.model = model,
+                                 .h = h,
+                                 .push_speed = ck_ode_push_speed(model),
+                                 .feedback = calloc(most, sizeof *made->feedback)};
     if (made && made->feedback) made->joints = dJointGroupCreate(0);
     if (!made || !made->joints) {
         ck_ode_contacts_destroy(made);

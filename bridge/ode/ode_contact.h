@@ -17,6 +17,9 @@ typedef struct ck_OdeContacts {
     double impulse[3];        // N·s on the body since it was last cleared
 } ck_OdeContacts;
 
+// The most speed, m/s, that pushing a particle out of a surface gives it.
+double ck_ode_push_speed(const ck_Model *model);
+
 // NULL in a scene without colliders. Errors: CK_NO_MEMORY.
 ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *model, double h, ck_Error *error);
 void ck_ode_contacts_destroy(ck_OdeContacts *contacts);

@@ -286,6 +286,34 @@ static void read_contact(const void *state, double *force) {
         force[axis] = ode->contacts ? unit * ode->contacts->impulse[axis] / ode->model->step : 0;
 }
 
+extern const char ck_code_ode[];
+
+static ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, const ck_Settings *used, bool is_quick) {
+    const ck_Model *model = &scaled->model;
+    code->text = ck_code_ode;
+    code->extension = "c";
+    ck_code_number(code, "contact_cfm", CONTACT_SOFTNESS * ck_stability_lightness(model));
+    ck_code_number(code, "push_speed", ck_ode_push_speed(model));
+    ck_code_number(code, "body_radius", 0.5 * model->spacing);
+    ck_code_number(code, "sor", used->relaxation);
+    ck_code_number(code, "erp_set", used->own[OWN_ERP]);
+    ck_code_number(code, "cfm_set", used->own[OWN_CFM] * scaled->mass);
+    ck_code_part(code, "erp", ck_settings_has(used, CK_OWN + OWN_ERP));
+    ck_code_part(code, "cfm", ck_settings_has(used, CK_OWN + OWN_CFM));
+    ck_code_part(code, "quick", is_quick);
+    return CK_OK;
+}
+
+static ck_Status code_quick(ck_Code *out, const ck_ScaledModel *scaled, const ck_Settings *used, ck_Error *error) {
+    (void)error;
+    return code(out, scaled, used, true);
+}
+
+static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const ck_Settings *used, ck_Error *error) {
+    (void)error;
+    return code(out, scaled, used, false);
+}
+
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
      CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
@@ -377,6 +405,7 @@ const ck_Engine ck_ode_quick = {
     .release = release,
     .contact = read_contact,
     .destroy = destroy,
+    .code = code_quick,
 };
 
 const ck_Engine ck_ode_direct = {
@@ -394,4 +423,5 @@ const ck_Engine ck_ode_direct = {
     .release = release,
     .contact = read_contact,
     .destroy = destroy,
+    .code = code_direct,
 };

@@ -32,7 +32,7 @@ static void list_all(void) {
     printf("Engines ('clothcheck list ENGINE' tells its settings):\n");
     for (int i = 0; i < ck_engine_count(); i++)
         printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
-               ck_engine_at(i)->version());
+               ck_engine_version(ck_engine_at(i)));
     list_quirks("seed-tecido", ck_tecido_quirk_names, CK_TECIDO_QUIRK_COUNT);
     list_quirks("seed-cloth", ck_cloth_quirk_names, CK_CLOTH_QUIRK_COUNT);
     printf("\nMetrics:\n");
@@ -49,7 +49,7 @@ static ck_Status list_engine(const char *name, ck_Error *error) {
     if (!engine)
         return ck_fail(error, CK_BAD_INPUT, "there is no engine %s%s; 'clothcheck list' tells them", name,
                        ck_name_hint(hint, sizeof hint, name, ck_engine_name, NULL));
-    printf("%s: %s (%s %s)\n\nIt models ", engine->name, engine->about, engine->family, engine->version());
+    printf("%s: %s (%s %s)\n\nIt models ", engine->name, engine->about, engine->family, ck_engine_version(engine));
     const char *separator = "";
     for (int bit = 0; bit < CK_TERM_COUNT; bit++)
         if (engine->terms & (1u << bit)) {

@@ -73,7 +73,9 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
         status = ck_comparison_run(&comparisons[i], &options, error);
         ck_progress_clear();
         if (!status && arguments->out) ck_tables_add(tables, &comparisons[i], &options);
-        if (!status && arguments->out) status = ck_replay_write(&comparisons[i], arguments->out, error);
+        if (!status && arguments->out)
+            status =
+                ck_replay_write(&comparisons[i], arguments->out, arguments->appends && arguments->by_engine, error);
         if (!status) show(answer, &comparisons[i]);
         ck_comparison_free_runs(&comparisons[i]);
     }
@@ -91,7 +93,8 @@ ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *err
     if (!status) status = check_names(comparisons, count, error);
     ck_Keeping keeping = arguments->forces ? CK_KEEP_NONE : arguments->appends ? CK_KEEP_OTHERS : CK_KEEP_OR_FAIL;
     if (!status && arguments->out)
-        status = ck_tables_open(&tables, arguments->out, keeping, comparisons, count, &arguments->options, error);
+        status = ck_tables_open(&tables, arguments->out, keeping, arguments->by_engine, comparisons, count,
+                                &arguments->options, error);
     if (!status) status = run_all(comparisons, arguments, &tables, &arguments->answer, show, error);
     if (!status && arguments->out) status = ck_tables_close(&tables, error);
     ck_tables_discard(&tables);

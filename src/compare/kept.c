@@ -16,10 +16,17 @@ static bool has_engine(const ck_Kept *kept, const char *name) {
     return false;
 }
 
-// Whether a row is of what will be written anew; else it may stay where others are kept.
+// Whether a row is of what will be written anew; else it may stay where others are kept. A truth is written with any
+// engine of its scene.
 static bool is_again(const ck_Kept *kept, const ck_CsvTable *table, int row) {
-    return has_scene(kept, ck_csv_table_text(table, row, 0)) &&
-           (!kept->by_engine || has_engine(kept, ck_csv_table_text(table, row, 1)));
+    if (!has_scene(kept, ck_csv_table_text(table, row, 0))) return false;
+    bool is_again = !kept->by_engine;
+    for (int i = 0; i < table->column_count && !is_again; i++) {
+        const char *column = table->layout->columns[i].name, *engine = ck_csv_table_text(table, row, i);
+        bool is_engine = !strcmp(column, "engine") || !strcmp(column, "other_engine");
+        is_again = is_engine && (has_engine(kept, engine) || !strcmp(engine, "truth"));
+    }
+    return is_again;
 }
 
 // As ck_csv_table_read, but a file that is not there has no rows.
@@ -35,7 +42,8 @@ static ck_Status check_lost(const ck_Kept *kept, const ck_Layout *layout, bool k
     ck_CsvTable table;
     ck_Status status = read_table(&table, kept->directory, layout, error);
     for (int i = 0; i < table.row_count && !status; i++) {
-        const char *scene = ck_csv_table_text(&table, i, 0), *engine = ck_csv_table_text(&table, i, 1);
+        const char *scene = ck_csv_table_text(&table, i, 0),
+                   *engine = ck_csv_table_text(&table, i, ck_layout_column(layout, "engine"));
         if (has_scene(kept, scene) && has_engine(kept, engine)) continue;
         bool can_stay = !is_again(kept, &table, i);
         if (can_stay && keeps_others) continue;

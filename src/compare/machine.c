@@ -50,8 +50,10 @@ void ck_machine_tell(ck_MachineFact tell, void *context) {
     tell_library(tell, context, "ODE", CK_ODE_FILES, CK_ODE_REGISTERS);
     tell(context, "clothcheck", CK_VERSION);
     for (int i = 0; i < ck_engine_count(); i++) {
+        // of others runs.csv tells the version: they may join what is there
+        if (ck_engine_at(i)->outside) continue;
         snprintf(key, sizeof key, "engine %s", ck_engine_at(i)->name);
-        tell(context, key, ck_engine_at(i)->version());
+        tell(context, key, ck_engine_version(ck_engine_at(i)));
     }
     time_t now = time(NULL);
     strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));

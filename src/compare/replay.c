@@ -31,14 +31,16 @@ static bool is_drawn(const ck_Spring *spring) {
     return spring->kind == CK_STRUCTURAL;
 }
 
-static int write_header(FILE *file, const ck_Comparison *comparison, int frames) {
+// stay, names: paths of an older replay, which come first; a name ends with its line.
+static void write_header(FILE *file, const ck_Comparison *comparison, int frames, int stay, const char *const *names) {
     const ck_Model *model = &comparison->model;
     bool has_truth = comparison->truth.path_count > 0;
-    int springs = 0, paths = has_truth;
+    int springs = 0, paths = has_truth + stay;
     for (int i = 0; i < model->spring_count; i++) springs += is_drawn(&model->springs[i]);
     for (int i = 0; i < comparison->run_count; i++) paths += comparison->runs[i].trajectory.frame_count > 0;
     fprintf(file, "clothcheck replay 1\nscene %s\ncolumns %d\nparticles %d\nsprings %d\nframes %d\npaths %d\n",
             model->name, model->columns, model->particle_count, springs, frames, paths);
+    for (int i = 0; i < stay; i++) fprintf(file, "path %.*s\n", (int)strcspn(names[i], "\n"), names[i]);
     for (int i = 0; i < comparison->run_count; i++)
         if (comparison->runs[i].trajectory.frame_count > 0)
             fprintf(file, "path %s\n", comparison->runs[i].engine->name);
@@ -52,7 +54,6 @@ static int write_header(FILE *file, const ck_Comparison *comparison, int frames)
             fprintf(file, "plane %g %g %g %g %g %g\n", point[0], point[1], point[2], normal[0], normal[1], normal[2]);
     }
     fprintf(file, "data\n");
-    return paths;
 }
 
 static void write_float(FILE *file, double number) {
@@ -80,31 +81,81 @@ static void write_path(FILE *file, const ck_Model *model, const ck_Trajectory *p
     }
 }
 
+static void write_paths(FILE *file, const ck_Comparison *comparison, int stride, int frames) {
+    const ck_Model *model = &comparison->model;
+    const ck_Reference *truth = &comparison->truth.reference;
+    for (int i = 0; i < comparison->run_count; i++)
+        if (comparison->runs[i].trajectory.frame_count > 0)
+            write_path(file, model, &comparison->runs[i].trajectory, false, stride, frames);
+    if (comparison->truth.path_count) write_path(file, model, &truth->trajectory, truth->is_static, stride, frames);
+}
+
 static void write_all(FILE *file, const ck_Comparison *comparison) {
     const ck_Model *model = &comparison->model;
     int stride = find_stride(model, comparison->run_count + 1);
     int frames = (model->frame_count + stride - 1) / stride + 1;
-    write_header(file, comparison, frames);
+    write_header(file, comparison, frames, 0, NULL);
     for (int i = 0; i < frames; i++) write_float(file, kept_frame(model, stride, i) * model->step);
     write_springs(file, model);
-    for (int i = 0; i < comparison->run_count; i++)
-        if (comparison->runs[i].trajectory.frame_count > 0)
-            write_path(file, model, &comparison->runs[i].trajectory, false, stride, frames);
-    if (comparison->truth.path_count)
-        write_path(file, model, &comparison->truth.reference.trajectory, comparison->truth.reference.is_static, stride,
-                   frames);
+    write_paths(file, comparison, stride, frames);
 }
 
-ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, ck_Error *error) {
+// The paths of an older replay of the scene that stay, by their number; those run anew and the truth are replaced.
+static int find_staying(const ck_Replay *old, const ck_Comparison *comparison, const char **names, int *numbers) {
+    const char *line = strstr(old->bytes, "\npath ");
+    int count = 0;
+    for (int i = 0; i < old->path_count; i++, line = strchr(line + 1, '\n')) {
+        const char *name = line + strlen("\npath ");
+        size_t length = strcspn(name, "\n");
+        bool stays = strncmp(name, "truth\n", 6) != 0 || !comparison->truth.path_count;
+        for (int k = 0; k < comparison->run_count && stays; k++) {
+            const char *again = comparison->runs[k].engine->name;
+            stays = strlen(again) != length || strncmp(again, name, length) != 0;
+        }
+        names[count] = name;
+        numbers[count] = i;
+        count += stays;
+    }
+    return count;
+}
+
+// The paths of an older replay, and those of the comparison at its frames.
+static void write_joined(FILE *file, const ck_Comparison *comparison, const ck_Replay *old) {
+    const char *names[CK_REPLAY_MAX_PATHS];
+    int numbers[CK_REPLAY_MAX_PATHS], stay = find_staying(old, comparison, names, numbers);
+    size_t front = (size_t)old->frame_count * sizeof(float) + ck_replay_spring_bytes(old);
+    size_t path_bytes = ck_replay_path_numbers(old) * sizeof(float);
+    const char *data = old->bytes + old->header_size;
+    const ck_Model *model = &comparison->model;
+    write_header(file, comparison, old->frame_count, stay, names);
+    fwrite(data, 1, front, file);
+    for (int i = 0; i < stay; i++) fwrite(data + front + (size_t)numbers[i] * path_bytes, 1, path_bytes, file);
+    int stride = find_stride(model, 1);
+    // its frames are every stride-th, of whatever stride it was made with
+    float second = 0;
+    if (old->frame_count > 1) memcpy(&second, data + sizeof second, sizeof second);
+    if (second > 0) stride = (int)fmax(1, round((double)second / model->step));
+    write_paths(file, comparison, stride, old->frame_count);
+}
+
+ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, ck_Error *error) {
+    ck_Replay old = {0};
+    joins = joins && !ck_replay_read(&old, directory, comparison->model.name, NULL) &&
+            old.particle_count == comparison->model.particle_count &&
+            old.path_count + comparison->run_count <= CK_REPLAY_MAX_PATHS;
     char *folder = ck_path_join(directory, CK_REPLAY_DIRECTORY), *name = ck_replay_name(comparison->model.name);
     ck_WholeFile whole = {0};
     ck_Status status = folder && name ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_whole_file_open(&whole, folder, name, error);
     if (!status) {
-        write_all(whole.file, comparison);
+        if (joins)
+            write_joined(whole.file, comparison, &old);
+        else
+            write_all(whole.file, comparison);
         status = ck_whole_file_close(&whole, error);
     }
     ck_whole_file_discard(&whole);
+    ck_replay_free(&old);
     free(name);
     free(folder);
     return status;

@@ -7,18 +7,18 @@
 #include <stdio.h>
 #include <string.h>
 
-ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, const ck_Comparison *comparisons,
-                         int count, const ck_CompareOptions *options, ck_Error *error) {
+ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, bool by_engine,
+                         const ck_Comparison *comparisons, int count, const ck_CompareOptions *options,
+                         ck_Error *error) {
     *tables = (ck_Tables){0};
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-    const ck_Kept kept = {directory, comparisons, count, options, false};
-    ck_Status status =
-        keeping == CK_KEEP_NONE ? CK_OK : ck_kept_check(&kept, &ck_layouts[CK_RUNS], keeping == CK_KEEP_OTHERS, error);
+    const ck_Kept kept = {directory, comparisons, count, options, by_engine};
+    bool keeps = keeping == CK_KEEP_OTHERS;
+    ck_Status status = keeping == CK_KEEP_NONE ? CK_OK : ck_kept_check(&kept, &ck_layouts[CK_RUNS], keeps, error);
     for (int i = 0; i < CK_COMPARISON_LAYOUTS && !status; i++) {
         status = ck_csv_open(&tables->csv[i], directory, &ck_layouts[i], error);
-        if (!status && keeping == CK_KEEP_OTHERS && i != CK_MACHINE)
-            status = ck_kept_copy(&kept, &tables->csv[i], &ck_layouts[i], error);
+        if (!status && keeps && i != CK_MACHINE) status = ck_kept_copy(&kept, &tables->csv[i], &ck_layouts[i], error);
     }
     return status;
 }
@@ -27,7 +27,11 @@ ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping ke
 static void write_command(char *out, size_t size, const ck_Comparison *comparison, const ck_Run *run,
                           const ck_CompareOptions *options) {
     const char *engine = run->engine->name;
-    size_t used = (size_t)snprintf(out, size, "clothcheck run %s --engine %s", comparison->path, engine);
+    const ck_Outside *outside = run->engine->outside;
+    size_t used = outside && outside->is_recorded
+                      ? (size_t)snprintf(out, size, "clothcheck score %s %s", comparison->path, outside->arguments)
+                  : outside ? (size_t)snprintf(out, size, "clothcheck run %s %s", comparison->path, outside->arguments)
+                            : (size_t)snprintf(out, size, "clothcheck run %s --engine %s", comparison->path, engine);
     if (run->status == CK_RUN_TOO_SLOW)
         used += (size_t)snprintf(out + used, size - used, " --patience %g", options->limits.patience);
     for (int i = 0; i < options->override_count; i++) {
@@ -63,7 +67,7 @@ static void add_run(ck_Csv *csv, const ck_Comparison *comparison, const ck_Run *
     ck_csv_number(csv, timing->repeat_count ? timing->worst_step : NAN);
     ck_csv_number(csv, simulated / median);
     ck_csv_count(csv, run->peak_rss_bytes);
-    ck_csv_text(csv, run->engine->version());
+    ck_csv_text(csv, ck_engine_version(run->engine));
     ck_csv_text(csv, run->engine->about);
     ck_csv_text(csv, command);
 }

@@ -19,10 +19,12 @@ typedef enum ck_Keeping {
 
 // Starts all six in a directory, which is made where it is missing. The comparisons are those that will be added, each
 // of the engines of options.
+//   by_engine  others are those of other engines on the same scene, too
 // Errors: CK_BAD_INPUT where results would be lost, CK_IO, CK_NO_MEMORY. End with ck_tables_close or ck_tables_discard
 // in any case.
-ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, const ck_Comparison *comparisons,
-                         int count, const ck_CompareOptions *options, ck_Error *error);
+ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, bool by_engine,
+                         const ck_Comparison *comparisons, int count, const ck_CompareOptions *options,
+                         ck_Error *error);
 
 // Adds the rows of one finished comparison. options are those it ran with.
 void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options);
@@ -67,6 +69,7 @@ ck_Status ck_kept_copy(const ck_Kept *kept, ck_Csv *csv, const ck_Layout *layout
 
 // Writes a finished comparison's replay below a directory: every k-th frame and the last, so that there are at most 61
 // and the file has some 4 MiB. Errors: CK_IO, CK_NO_MEMORY, and then there is none.
-ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, ck_Error *error);
+//   joins  the paths of other engines that a replay of the scene holds already stay, at its frames
+ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, ck_Error *error);
 
 #endif

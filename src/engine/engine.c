@@ -9,6 +9,17 @@ const ck_Setting *ck_engine_setting(const ck_Engine *engine, int slot) {
     return NULL;
 }
 
+ck_Status ck_engine_create(const ck_Engine *engine, void **state, const ck_Model *model, const ck_Settings *wanted,
+                           ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
+    const ck_Outside *outside = engine->outside;
+    return outside ? outside->open(outside->source, state, model, wanted, used, ledger, error)
+                   : engine->create(state, model, wanted, used, ledger, error);
+}
+
+const char *ck_engine_version(const ck_Engine *engine) {
+    return engine->outside ? engine->outside->version : engine->version();
+}
+
 bool ck_engine_lacks(const ck_Engine *engine, const ck_Model *model) {
     return model->terms & ~engine->terms;
 }
@@ -18,7 +29,7 @@ ck_Status ck_engine_automatic(const ck_Engine *engine, const ck_Model *model, co
     void *state;
     if (ck_engine_lacks(engine, model))
         return ck_fail(error, CK_REFUSED, "%s does not model all that %s has", engine->name, model->name);
-    ck_Status status = engine->create(&state, model, wanted, used, NULL, error);
+    ck_Status status = ck_engine_create(engine, &state, model, wanted, used, NULL, error);
     if (!status) engine->destroy(state);
     return status;
 }

@@ -2,8 +2,10 @@
 #ifndef CK_ENGINE_H
 #define CK_ENGINE_H
 
+#include "code.h"
 #include "ledger.h"
 #include "model.h"
+#include "scaled_model.h"
 #include "settings.h"
 #include "status.h"
 #include "trajectory.h"
@@ -29,6 +31,18 @@ typedef enum ck_Method {
     CK_METHOD_SEED,              // an origin, with its quirks
     CK_METHOD_SEMI_IMPLICIT_ODE, // velocity constraints along directions frozen at the start of the step
 } ck_Method;
+
+// What an engine is that is no part of the program.
+typedef struct ck_Outside {
+    // In place of create, with source as what it knows of itself.
+    ck_Status (*open)(const void *source, void **state, const ck_Model *model, const ck_Settings *wanted,
+                      ck_Settings *used, ck_Ledger *ledger, ck_Error *error);
+    const void *source;
+    const char *version;   // in place of version
+    const char *arguments; // what a command line names it by, after clothcheck run SCENE
+    bool is_recorded;      // what it does is fixed: it is not run again, at another step or to be timed
+    double frame_cost;     // s of CPU that a frame cost where it was recorded; NaN: not known
+} ck_Outside;
 
 typedef struct ck_Engine {
     const char *name;
@@ -59,7 +73,17 @@ typedef struct ck_Engine {
     // A literal that a reader of the result must know, such as that a speed was clamped; NULL: nothing. May be NULL.
     const char *(*remark)(const void *state);
     void (*destroy)(void *state);
+    // Fills in what its program to paste needs besides the model, in units of its own, and the settings used: text,
+    // extension and values. NULL: there is none. Errors: CK_BAD_INPUT where it cannot say that scene, CK_NO_MEMORY.
+    ck_Status (*code)(ck_Code *code, const ck_ScaledModel *scaled, const ck_Settings *used, ck_Error *error);
+    const ck_Outside *outside; // NULL: it is part of the program
 } ck_Engine;
+
+// Builds an engine's world: its create, or what it has in its place. Arguments and errors are those of create.
+ck_Status ck_engine_create(const ck_Engine *engine, void **state, const ck_Model *model, const ck_Settings *wanted,
+                           ck_Settings *used, ck_Ledger *ledger, ck_Error *error);
+
+const char *ck_engine_version(const ck_Engine *engine);
 
 // The row of an engine's table for a slot; NULL where it has none.
 const ck_Setting *ck_engine_setting(const ck_Engine *engine, int slot);

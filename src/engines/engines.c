@@ -9,25 +9,47 @@
 // ends with NULL
 extern const ck_Engine *const ck_engine_table[];
 
-int ck_engine_count(void) {
+// Those from outside the program, after the table's own.
+static const ck_Engine *added[8];
+static int added_count;
+
+static int own_count(void) {
     int count = 0;
     while (ck_engine_table[count]) count++;
     return count;
 }
 
+int ck_engine_count(void) {
+    return own_count() + added_count;
+}
+
 const ck_Engine *ck_engine_at(int index) {
-    return ck_engine_table[index];
+    int own = own_count();
+    return index < own ? ck_engine_table[index] : added[index - own];
 }
 
 const ck_Engine *ck_engine_find(const char *name) {
-    for (int i = 0; ck_engine_table[i]; i++)
-        if (!strcmp(ck_engine_table[i]->name, name)) return ck_engine_table[i];
+    for (int i = 0; i < ck_engine_count(); i++)
+        if (!strcmp(ck_engine_at(i)->name, name)) return ck_engine_at(i);
     return NULL;
+}
+
+ck_Status ck_engines_add(const ck_Engine *engine, ck_Error *error) {
+    size_t length = strlen(engine->name);
+    if (!length || length > 40 || strspn(engine->name, CK_PLAIN_LETTERS) != length)
+        return ck_fail(error, CK_BAD_INPUT, "an engine cannot be named '%.60s': take at most 40 of " CK_PLAIN_LETTERS,
+                       engine->name);
+    if (!strcmp(engine->name, "truth") || ck_engine_find(engine->name))
+        return ck_fail(error, CK_BAD_INPUT, "there is an engine %s already; give yours another name", engine->name);
+    if (added_count == sizeof added / sizeof *added)
+        return ck_fail(error, CK_BAD_INPUT, "at most %d engines from outside can be used at once", added_count);
+    added[added_count++] = engine;
+    return CK_OK;
 }
 
 const char *ck_engine_name(const void *table, int index) {
     (void)table;
-    return index < ck_engine_count() ? ck_engine_table[index]->name : NULL;
+    return index < ck_engine_count() ? ck_engine_at(index)->name : NULL;
 }
 
 static ck_Status check_setting(const ck_Scene *scene, const ck_SceneSetting *setting, ck_Error *error) {

@@ -9,6 +9,10 @@
 int ck_engine_count(void);
 const ck_Engine *ck_engine_at(int index);
 
+// Adds an engine from outside the program, which must outlive all use. Errors: CK_BAD_INPUT where its name is taken or
+// not plain, or there are too many.
+ck_Status ck_engines_add(const ck_Engine *engine, ck_Error *error);
+
 // NULL where there is no such engine.
 const ck_Engine *ck_engine_find(const char *name);
 

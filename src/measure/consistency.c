@@ -29,7 +29,7 @@ static bool advance(const ck_Run *run, const ck_Model *model, uint32_t substeps,
     ck_Settings wanted = run->used, used;
     wanted.substeps = substeps;
     void *state;
-    if (run->engine->create(&state, model, &wanted, &used, NULL, NULL)) return false;
+    if (ck_engine_create(run->engine, &state, model, &wanted, &used, NULL, NULL)) return false;
     bool reached = true;
     for (int i = 0; i < frames && reached; i++) reached = run->engine->step(state) == CK_STEP_OK;
     run->engine->read(state, position, velocity);
@@ -84,7 +84,8 @@ ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double bu
     double frames = PIECES * (FINER * (PIECE_FRAMES + APART) + PIECE_FRAMES * 2);
     bool complete = ck_run_has_all_frames(run);
     // a restart knows nothing of pins let go before it
-    if (!complete || run->model->release_count || run->measured_cpu / run->model->frame_count * frames > budget)
+    if (!complete || !run->used.substeps || run->model->release_count ||
+        run->measured_cpu / run->model->frame_count * frames > budget)
         return CK_OK;
     Result *result = ck_shared_allocate(sizeof *result);
     if (!result) return ck_fail(error, CK_NO_MEMORY, "out of memory");

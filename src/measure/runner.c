@@ -33,8 +33,8 @@ static void *create(const Job *job) {
     void *state = NULL;
     Report *report = job->report;
     report->ledger.count = 0;
-    report->status = job->run->engine->create(&state, job->run->model, &job->run->wanted, &report->used,
-                                              &report->ledger, &report->error);
+    report->status = ck_engine_create(job->run->engine, &state, job->run->model, &job->run->wanted, &report->used,
+                                      &report->ledger, &report->error);
     return state;
 }
 
@@ -198,11 +198,25 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
     return status;
 }
 
+// What a recording cost is told with it, once and for all.
+static void take_recorded_cost(ck_Run *run) {
+    double cost = run->engine->outside->frame_cost;
+    int frames = run->model->frame_count;
+    run->timing = (ck_Timing){.frames = frames, .worst_step = NAN, .has_failed = true};
+    if (isnan(cost)) return;
+    run->timing.cpu[0] = cost * frames;
+    run->timing.repeat_count = 1;
+}
+
 ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Error *error) {
     ck_Timing *timing = &run->timing;
     if (run->trajectory.frame_count <= run->model->frame_count || timing->repeat_count == CK_MAX_REPEATS ||
         timing->has_failed)
         return CK_OK;
+    if (run->engine->outside && run->engine->outside->is_recorded) {
+        take_recorded_cost(run);
+        return CK_OK;
+    }
     if (!timing->frames) {
         double fits = run->measured_cpu > 0 ? budget / run->measured_cpu : 1;
         timing->frames = (int)fmax(1, floor(fmin(1, fits) * run->model->frame_count));

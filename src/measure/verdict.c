@@ -117,7 +117,7 @@ ck_Status ck_verdict_run(ck_Run *run, const ck_Model *model, const ck_Reference 
     ck_Status status = ck_run_measure(run, model, engine, &settings, limits, error);
     if (!status) ck_verdict(run, reference);
     // an origin's step is one of its quirks
-    bool has_rule = !wanted->substeps && engine->method != CK_METHOD_SEED;
+    bool has_rule = !wanted->substeps && engine->method != CK_METHOD_SEED && ck_engine_setting(engine, CK_SUBSTEPS);
     uint32_t chosen = run->used.substeps;
     for (int i = 0; i < HALVINGS && has_rule && chosen && !status && blew_up(run); i++) {
         settings.substeps = 2 * run->used.substeps;

@@ -143,7 +143,7 @@ static ck_Status follow(Outcome *outcome, const ck_Engine *engine, const ck_Mode
                         int frames, double *state, ck_Error *error) {
     ck_Settings used;
     void *world;
-    ck_Status status = engine->create(&world, model, wanted, &used, NULL, error);
+    ck_Status status = ck_engine_create(engine, &world, model, wanted, &used, NULL, error);
     if (status) return status;
     double *velocity = state + 3 * (size_t)model->particle_count, cpu = 0;
     int frame = 0;

@@ -175,7 +175,7 @@ static void end_row(int end, void *context) {
 // Line by line, so that an error knows where it is.
 static ck_Status read_csv(Reader *reader, const char *bytes, size_t size) {
     struct csv_parser parser;
-    if (csv_init(&parser, CSV_STRICT | CSV_APPEND_NULL))
+    if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL))
         return ck_fail(reader->error, CK_NO_MEMORY, "%s: out of memory", reader->recording->path);
     for (size_t at = 0; at < size && !reader->status;) {
         const char *newline = memchr(bytes + at, '\n', size - at);

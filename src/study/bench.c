@@ -139,7 +139,7 @@ static void create(Entrant *entrant, const ck_Model *model, ck_Settings wanted) 
     ck_Error why = {0};
     if (ck_engine_lacks(entrant->engine, model))
         snprintf(entrant->reason, sizeof entrant->reason, "does not model it");
-    else if (entrant->engine->create(&entrant->state, model, &wanted, &used, NULL, &why))
+    else if (ck_engine_create(entrant->engine, &entrant->state, model, &wanted, &used, NULL, &why))
         snprintf(entrant->reason, sizeof entrant->reason, "%.199s", why.message);
     if (*entrant->reason) entrant->state = NULL;
 }

@@ -52,8 +52,8 @@ typedef struct ck_TuneValidation {
 
 typedef struct ck_Tuning {
     ck_TunePoint best;
-    ck_TunePoint *points; // [point_count] all that was tried
-    int point_count, best_index; // best is points[best_index]
+    ck_TunePoint *points;           // [point_count] all that was tried
+    int point_count, best_index;    // best is points[best_index]
     double uncertainty;             // below which errors are alike
     ck_TuneValidation *validations; // [validate_count]
     int validation_count;

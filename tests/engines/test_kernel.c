@@ -259,7 +259,7 @@ static void compare_threads(const ck_Model *model, const ck_Engine *engine, uint
         ck_Settings used, wanted = {.substeps = substeps, .iterations = 3, .threads = run ? threads : 1};
         double *x = run ? many : one;
         void *state;
-        assert_int_equal(engine->create(&state, model, &wanted, &used, NULL, NULL), CK_OK);
+        assert_int_equal(ck_engine_create(engine, &state, model, &wanted, &used, NULL, NULL), CK_OK);
         for (int frame = 0; frame < 4; frame++) assert_int_equal(engine->step(state), CK_STEP_OK);
         engine->read(state, x, x + bytes / sizeof *x);
         engine->destroy(state);

@@ -102,7 +102,7 @@ static void test_substeps(void **state) {
     for (size_t i = 0; i < (SLOW ? 2 : sizeof runs / sizeof *runs); i++) {
         ck_Settings used, wanted = {.substeps = runs[i].substeps, .own = {runs[i].mended}, .own_set = 1};
         void *cloth;
-        assert_int_equal(engine->create(&cloth, model, &wanted, &used, NULL, NULL), CK_OK);
+        assert_int_equal(ck_engine_create(engine, &cloth, model, &wanted, &used, NULL, NULL), CK_OK);
         bool finite = true;
         for (int frame = 0; frame < 600 && finite; frame++) finite = engine->step(cloth) == CK_STEP_OK;
         engine->read(cloth, x, v);

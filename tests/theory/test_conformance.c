@@ -289,7 +289,7 @@ static void test_ledger(void **state) {
         ck_Ledger ledger = {0};
         ck_Settings used, wanted = {0};
         void *world;
-        assert_int_equal(engine->create(&world, &fixture.model, &wanted, &used, &ledger, NULL), CK_OK);
+        assert_int_equal(ck_engine_create(engine, &world, &fixture.model, &wanted, &used, &ledger, NULL), CK_OK);
         engine->destroy(world);
         const char *const quantities[] = {
             "time step", "mass", "mass of the last", "gravity", "drag", "structural stiffness", "spring damping"};

@@ -353,7 +353,7 @@ static void test_many_colliders(void **state) {
         ck_Ledger ledger = {0};
         ck_Settings used, wanted = {0};
         void *world;
-        assert_int_equal(engine->create(&world, &fixture.model, &wanted, &used, &ledger, NULL), CK_OK);
+        assert_int_equal(ck_engine_create(engine, &world, &fixture.model, &wanted, &used, &ledger, NULL), CK_OK);
         engine->destroy(world);
         assert_true(ledger.count <= CK_LEDGER_CAPACITY);
     }

@@ -1,0 +1,74 @@
+#include "command.h"
+#include "outside.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void show(ck_Answer *answer, const ck_Comparison *comparison) {
+    ck_answer_summary(answer, comparison);
+    for (int i = 0; i < comparison->run_count; i++)
+        if (comparison->runs[i].engine->outside && comparison->runs[i].remark)
+            ck_answer_line(answer, CK_ANSWER_NOTE, "%s: %s", comparison->runs[i].engine->name,
+                           comparison->runs[i].remark);
+    ck_answer_cheapest(answer, comparison);
+}
+
+// Puts the recording before the engines that were asked for, which are none where none was.
+static ck_Status add_recording(ck_Arguments *arguments, ck_Engine **engine, ck_Error *error) {
+    ck_Comparison comparison;
+    ck_CompareOptions *options = &arguments->options;
+    ck_Status status = ck_comparison_load(&comparison, arguments->scenes[0], error);
+    if (!status)
+        status = ck_outside_recording(engine, arguments->name ? arguments->name : "recorded", arguments->path,
+                                      arguments->interval, 1e-3 * arguments->frame_cost, &comparison.model, error);
+    ck_comparison_free(&comparison);
+    if (!status) status = ck_engines_add(*engine, error);
+    if (status) return status;
+    bool has_others = options->engines == arguments->engines;
+    int others = has_others ? options->engine_count : 0;
+    if (others + 1 > CK_COMPARISON_MAX_ENGINES)
+        return ck_fail(error, CK_BAD_INPUT, "at most %d engines beside a recording", CK_COMPARISON_MAX_ENGINES - 1);
+    memmove(arguments->engines + 1, arguments->engines, (size_t)others * sizeof *arguments->engines);
+    arguments->engines[0] = *engine;
+    options->engines = arguments->engines;
+    options->engine_count = others + 1;
+    return CK_OK;
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Error error = {0};
+    ck_Arguments arguments;
+    ck_Engine *engine = NULL;
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    if (!status && (arguments.scene_count != 1 || !arguments.path))
+        status = ck_fail(&error, CK_BAD_INPUT, "score takes one SCENE and --path FILE; %d scenes%s are given",
+                         arguments.scene_count, arguments.path ? "" : " and no file");
+    if (!status) status = add_recording(&arguments, &engine, &error);
+    arguments.by_engine = true;
+    if (!arguments.out) arguments.options.consistency_budget = 0;
+    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status && arguments.out) {
+        ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s", arguments.out);
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments.out);
+    } else if (!status) {
+        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT,
+                       "the same with --engine native-verlet --out out, and clothcheck report out");
+    }
+    return ck_command_end(&arguments, status, &error);
+}
+
+const ck_Command ck_command_score = {
+    .name = "score",
+    .arguments = "SCENE",
+    .about = "judges positions that another program recorded",
+    .help =
+        "Measures a recording as if it were an engine's run: status, all metrics, errors to the truth, and the "
+        "distances to each\n--engine that runs beside it. With --out it writes the CSVs and the replay; --append adds "
+        "it to a comparison that is\nthere. A recording may have fewer or more frames than the scene.",
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS |
+              CK_TAKES_KEEPING | CK_TAKES_RECORDING,
+    .seconds = 900,
+    .patience = 10,
+    .run = run,
+};

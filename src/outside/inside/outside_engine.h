@@ -1,0 +1,18 @@
+// The parts of an engine from outside, in one allocation.
+#ifndef CK_OUTSIDE_ENGINE_H
+#define CK_OUTSIDE_ENGINE_H
+
+#include "outside.h"
+
+typedef struct ck_OutsideEngine {
+    ck_Engine engine; // its address is that of the whole
+    ck_Outside outside;
+    char name[64], about[160], version[80], arguments[400];
+    void *source; // of outside
+    void (*free_source)(void *source);
+} ck_OutsideEngine;
+
+// With a name of its own, and of everything else nothing. NULL when out of memory.
+ck_OutsideEngine *ck_outside_new(const char *name);
+
+#endif
