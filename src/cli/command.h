@@ -24,7 +24,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_PATIENCE = 1024,
     CK_TAKES_FIT = 2048,
     CK_TAKES_FORM = 4096, // --json, --markdown
-    CK_TAKES_RECORDING = 8192
+    CK_TAKES_RECORDING = 8192,
+    CK_TAKES_FORMAT = 16384
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -42,7 +43,7 @@ struct ck_Command {
 
 extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_command_run, ck_command_compare,
     ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge,
-    ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score;
+    ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score, ck_command_export;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -53,6 +54,7 @@ typedef struct ck_Arguments {
     const char *out;         // directory; NULL: none
     const char *points;      // of fit; NULL: none
     double uncertainty;      // of each of its coordinates, m
+    const char *format;      // of export; NULL: json
     const char *path, *name; // of a recording; NULL: none
     double frame_cost,
         interval;   // ms that a frame of it cost, NaN: not known; s between frames of .npy, 0: as the scene

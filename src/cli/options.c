@@ -102,6 +102,7 @@ static const Option table[] = {
      .help = "CPU milliseconds that a frame of the scene cost the solver"},
     {"interval", "S", 0, CK_TAKES_RECORDING, NUMBER, PLACE(interval), 1e-12, 1e9, .fallback = "the scene's step",
      .help = "seconds between the frames of a .npy"},
+    {"format", "FORMAT", 0, CK_TAKES_FORMAT, TEXT, PLACE(format), .fallback = "json", .help = "json, csv or obj"},
     {"update", NULL, 0, CK_TAKES_UPDATE, FLAG, PLACE(is_update),
      .help = "write the baseline anew, and print what moved"},
     {"append", NULL, 'a', CK_TAKES_KEEPING, FLAG, PLACE(appends), .is_way = true,

@@ -147,6 +147,8 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
     const ck_SceneSprings *springs = scene->file->springs;
     if (!springs) return CK_OK;
     bool is_none = !(springs->stiffness > 0) && !(springs->shear > 0) && !(springs->bend > 0) && !springs->rigid;
+    const ck_SceneNetwork *network = scene->file->network;
+    bool lacks_bars = network && network->springs_count && !network->bars_count;
     const struct {
         const char *path;
         double value;
@@ -161,6 +163,9 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
          "only a cloth and a rope bend; add bars to a network, or leave it out"},
         {"springs.damping", springs->damping, is_none, "there is no spring; give a stiffness, or leave it out"},
         {"springs.prestretch", springs->prestretch, is_none, "there is no spring; give a stiffness, or leave it out"},
+        {"springs.stiffness", springs->stiffness, lacks_bars,
+         "there are no network.bars; network.springs have their own"},
+        {"springs.rigid", springs->rigid, lacks_bars, "there are no network.bars; network.springs have their own"},
     };
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
         if (rules[i].value > 0 && rules[i].is_idle)
@@ -181,6 +186,21 @@ static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_
                                      "particle %d starts %g m inside this collider; move the body or the collider", j,
                                      -gap);
         }
+    }
+    return CK_OK;
+}
+
+// A node's own start speed, over the scene's.
+static ck_Status set_node_velocity(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneNetwork *network = scene->file->network;
+    for (int i = 0; network && i < model->particle_count; i++) {
+        const double *velocity = network->nodes[i].velocity;
+        char path[48];
+        if (!velocity) continue;
+        snprintf(path, sizeof path, "network.nodes[%d].velocity", i);
+        if (model->pinned[i] && ck_length(velocity) > 0)
+            return ck_scene_fail(scene, path, error, "node %d is pinned; leave its velocity out, or the pin", i);
+        memcpy(model->velocity + 3 * i, velocity, 3 * sizeof(double));
     }
     return CK_OK;
 }
@@ -207,15 +227,18 @@ static ck_Status check_finite(const ck_Model *model, const ck_Scene *scene, ck_E
         "its numbers are too large or too small to be computed with; use metres, kilograms and seconds");
 }
 
-static unsigned terms_in_use(const ck_Model *model, const ck_SceneFile *file) {
+static unsigned terms_in_use(const ck_Model *model) {
     unsigned terms = 0;
     if (model->spring_count) terms |= CK_TERM_SPRINGS;
-    if (model->spring_count && file->springs->rigid) terms |= CK_TERM_RIGID;
-    if (model->spring_count && file->springs->damping > 0) terms |= CK_TERM_DAMPING;
+    for (int i = 0; i < model->spring_count; i++) {
+        if (isinf(model->springs[i].stiffness)) terms |= CK_TERM_RIGID;
+        if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
+    }
     if (ck_length(model->gravity) > 0) terms |= CK_TERM_GRAVITY;
     if (ck_length(model->force) > 0) terms |= CK_TERM_FORCE;
     if (model->drag > 0) terms |= CK_TERM_DRAG;
-    if (file->velocity && ck_length(file->velocity) > 0) terms |= CK_TERM_VELOCITY;
+    for (int i = 0; i < model->particle_count; i++)
+        if (ck_length(model->velocity + 3 * i) > 0) terms |= CK_TERM_VELOCITY;
     for (int i = 0; i < model->collider_count; i++)
         terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
     if (model->release_count) terms |= CK_TERM_RELEASE;
@@ -238,7 +261,9 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     status = check_outside(model, scene, error);
     if (status) return status;
     set_fields(model, scene->file);
-    model->terms = terms_in_use(model, scene->file);
+    status = set_node_velocity(model, scene, error);
+    if (status) return status;
+    model->terms = terms_in_use(model);
     return check_finite(model, scene, error);
 }
 

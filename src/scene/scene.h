@@ -26,15 +26,27 @@ typedef struct ck_SceneRope {
 } ck_SceneRope;
 
 typedef struct ck_SceneNode {
-    double at[3]; // m
-    double mass;  // kg
+    double at[3];     // m
+    double mass;      // kg
+    double *velocity; // [3] m/s; NULL: the scene's
 } ck_SceneNode;
+
+// A spring with values of its own.
+typedef struct ck_SceneNetworkSpring {
+    uint32_t ends[2];
+    double stiffness, damping, rest; // N/m, N·s/m, m; rest 0: the distance at the start
+    bool rigid;                      // a bar of fixed length
+    char *kind;                      // structural, shear, bend; NULL: structural
+} ck_SceneNetworkSpring;
 
 typedef struct ck_SceneNetwork {
     ck_SceneNode *nodes;
     uint32_t nodes_count;
     uint32_t (*bars)[2];
     uint32_t bars_count;
+    ck_SceneNetworkSpring *springs;
+    uint32_t springs_count;
+    double size, spacing; // m; 0: those of its nodes and springs
 } ck_SceneNetwork;
 
 typedef struct ck_SceneSprings {

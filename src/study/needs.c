@@ -11,15 +11,26 @@ typedef struct Reduced {
     ck_SceneCloth cloth;
     ck_SceneRope rope;
     ck_SceneSprings springs;
+    ck_SceneNetwork network;
+    ck_SceneNetworkSpring *own; // of network
     ck_SceneCollider colliders[CK_NEEDS_MOST];
     ck_ScenePlane planes[CK_NEEDS_MOST];
     ck_SceneSphere spheres[CK_NEEDS_MOST];
     double force[3];
 } Reduced;
 
-// Copies what a change may touch, so that the scene stays as it is.
-static void copy_file(Reduced *reduced, const ck_SceneFile *file) {
+// Copies what a change may touch, so that the scene stays as it is. False without memory.
+static bool copy_file(Reduced *reduced, const ck_SceneFile *file) {
     reduced->file = *file;
+    if (file->network) {
+        const size_t count = file->network->springs_count;
+        reduced->network = *file->network;
+        reduced->own = malloc((count + 1) * sizeof *reduced->own);
+        if (!reduced->own) return false;
+        if (count) memcpy(reduced->own, file->network->springs, count * sizeof *reduced->own);
+        reduced->network.springs = reduced->own;
+        reduced->file.network = &reduced->network;
+    }
     if (file->cloth) reduced->cloth = *file->cloth, reduced->file.cloth = &reduced->cloth;
     if (file->rope) reduced->rope = *file->rope, reduced->file.rope = &reduced->rope;
     if (file->springs) reduced->springs = *file->springs, reduced->file.springs = &reduced->springs;
@@ -31,30 +42,55 @@ static void copy_file(Reduced *reduced, const ck_SceneFile *file) {
         if (file->colliders[i].sphere)
             reduced->spheres[i] = *file->colliders[i].sphere, reduced->colliders[i].sphere = &reduced->spheres[i];
     }
+    return true;
+}
+
+static bool is_of_kind(const ck_SceneNetworkSpring *spring, const char *kind) {
+    return spring->kind && !strcmp(spring->kind, kind);
+}
+
+// Whether a network has springs of a kind, of their own values.
+static bool has_own(const ck_SceneFile *file, const char *kind) {
+    bool has = false;
+    for (uint32_t i = 0; file->network && i < file->network->springs_count; i++)
+        has |= is_of_kind(&file->network->springs[i], kind);
+    return has;
+}
+static void drop_own(Reduced *reduced, const char *kind) {
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < reduced->network.springs_count; i++)
+        if (!is_of_kind(&reduced->own[i], kind)) reduced->own[left++] = reduced->own[i];
+    reduced->network.springs_count = left;
 }
 
 static bool has_shear(const ck_SceneFile *file) {
-    return file->springs && file->springs->shear > 0;
+    return (file->springs && file->springs->shear > 0) || has_own(file, "shear");
 }
 static void drop_shear(Reduced *reduced, int collider) {
     (void)collider;
     reduced->springs.shear = 0;
+    drop_own(reduced, "shear");
 }
 
 static bool has_bend(const ck_SceneFile *file) {
-    return file->springs && file->springs->bend > 0;
+    return (file->springs && file->springs->bend > 0) || has_own(file, "bend");
 }
 static void drop_bend(Reduced *reduced, int collider) {
     (void)collider;
     reduced->springs.bend = 0;
+    drop_own(reduced, "bend");
 }
 
 static bool has_damping(const ck_SceneFile *file) {
-    return file->springs && file->springs->damping > 0;
+    bool has = file->springs && file->springs->damping > 0;
+    for (uint32_t i = 0; file->network && i < file->network->springs_count; i++)
+        has |= file->network->springs[i].damping > 0;
+    return has;
 }
 static void drop_damping(Reduced *reduced, int collider) {
     (void)collider;
     reduced->springs.damping = 0;
+    for (uint32_t i = 0; i < reduced->network.springs_count; i++) reduced->own[i].damping = 0;
 }
 
 static bool has_drag(const ck_SceneFile *file) {
@@ -252,7 +288,10 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     }
     Reduced *reduced = calloc(1, sizeof *reduced);
     if (!reduced) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    copy_file(reduced, needs->comparison->scene.file);
+    if (!copy_file(reduced, needs->comparison->scene.file)) {
+        free(reduced);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
     terms[one->term].leave_out(reduced, one->collider);
     const ck_Scene scene = {.file = &reduced->file, .document = needs->comparison->scene.document};
     ck_Model model = {0};
@@ -274,6 +313,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     }
     ck_run_free(&run);
     ck_model_free(&model);
+    free(reduced->own);
     free(reduced);
     return status;
 }

@@ -16,6 +16,10 @@
     "name: n\nnetwork:\n  nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}]\n  "   \
     "bars: " bars "\nsprings: {stiffness: 10}\n" TIME
 
+#define OWN(springs)                                                                                                   \
+    "name: n\nnetwork:\n  nodes: [{at: [0, 0, 0], mass: 1}, {at: [1, 0, 0], mass: 1}, {at: [2, 0, 0], mass: 1}]\n"     \
+    "  springs: [" springs "]\n" TIME
+
 static const struct {
     const char *about, *text;
     const char *place, *message; // what the error must contain
@@ -25,6 +29,22 @@ static const struct {
      ":2:22:", "unknown key spaceing in rope; did you mean spacing?; known here: particles"},
     {"missing body", "name: r\n" TIME, ":1:1:", "needs one body"},
     {"two bodies", ROPE "cloth: {rows: 2, columns: 2, spacing: 1, mass: 1}\n" TIME, ":4:1:", "both rope and cloth"},
+    {"kind of a spring", OWN("{ends: [0, 1], stiffness: 3, kind: weft}"),
+     ":4:13:", "its kind is weft; it must be structural, shear or bend"},
+    {"spring without strength", OWN("{ends: [0, 1]}"), ":4:13:", "it needs either a stiffness above 0, or rigid: true"},
+    {"rigid and damped", OWN("{ends: [0, 1], rigid: true, damping: 1}"), ":4:13:", "no damping, which would do nothing"},
+    {"rigid and soft", OWN("{ends: [0, 1], rigid: true, stiffness: 1}"), ":4:13:", "it needs either a stiffness"},
+    {"rigid beside soft", OWN("{ends: [0, 1], stiffness: 3}, {ends: [1, 2], rigid: true}"),
+     ":4:43:", "it is rigid where those before are not"},
+    {"spring to nowhere", OWN("{ends: [0, 3], stiffness: 3}"), ":4:13:", "bar to node 3, which does not exist"},
+    {"no length at rest", OWN("{ends: [0, 1], stiffness: 3, rest: 0}"),
+     ":4:48:", "network.springs[].rest is 0; it must be a number above 0"},
+    {"springs for no bars", OWN("{ends: [0, 1], stiffness: 3}") "springs: {stiffness: 3}\n",
+     ":6:22:", "there are no network.bars"},
+    {"pin with a speed",
+     "name: n\nnetwork: {nodes: [{at: [0, 0, 0], mass: 1, velocity: [1, 0, 0]}, {at: [1, 0, 0], mass: 1}]}\npins: "
+     "[first]\n" TIME,
+     ":2:54:", "node 0 is pinned; leave its velocity out"},
     {"missing time", ROPE, ":1:1:", "lacks the key time"},
     {"missing inner key", "name: r\nrope: {particles: 3, mass: 1}\n" TIME, ":2:7:", "rope lacks the key spacing"},
     {"key twice", ROPE TIME "name: again\n", ":5:1:", "given twice"},

@@ -9,6 +9,11 @@
 
 ck_Status ck_model_unit(double *out, const double *from, const ck_Scene *scene, const char *path, ck_Error *error) {
     double length = ck_length(from);
+    // one that is a unit vector already, to rounding, stays as it is: so that what is written out reads back the same
+    if (fabs(length - 1) < 4e-16) {
+        memcpy(out, from, 3 * sizeof(double));
+        return CK_OK;
+    }
     if (!(length > 0) || !isfinite(length))
         return ck_scene_fail(scene, path, error, "%s has no direction; give a vector of any length above 0", path);
     for (int axis = 0; axis < 3; axis++) out[axis] = from[axis] / length;
@@ -125,10 +130,8 @@ static ck_Status build_cloth(ck_Model *model, const ck_Scene *scene, ck_Error *e
     return CK_OK;
 }
 
-static ck_Status check_bar(const ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
-    const uint32_t *bar = scene->file->network->bars[index];
-    char path[40];
-    snprintf(path, sizeof path, "network.bars[%u]", index);
+static ck_Status check_ends(const ck_Model *model, const ck_Scene *scene, const uint32_t *bar, const char *path,
+                            ck_Error *error) {
     for (int end = 0; end < 2; end++)
         if (bar[end] >= (uint32_t)model->particle_count)
             return ck_scene_fail(scene, path, error, "bar to node %u, which does not exist; the nodes are 0 to %d",
@@ -149,35 +152,81 @@ static ck_Status build_bars(ck_Model *model, const ck_Scene *scene, ck_Error *er
     if (network->bars_count && !(springs && (springs->rigid || springs->stiffness > 0)))
         return ck_scene_fail(scene, "network.bars", error,
                              "bars need springs: give springs.stiffness, or springs.rigid: true");
-    model->spacing = network->bars_count ? INFINITY : model->size;
     for (uint32_t i = 0; i < network->bars_count; i++) {
-        ck_Status status = check_bar(model, scene, i, error);
+        char path[40];
+        snprintf(path, sizeof path, "network.bars[%u]", i);
+        ck_Status status = check_ends(model, scene, network->bars[i], path, error);
         if (status) return status;
         int a = (int)network->bars[i][0], b = (int)network->bars[i][1];
         double length = ck_distance(model->position + 3 * a, model->position + 3 * b);
         add_spring(model, springs, a, b, length, CK_STRUCTURAL);
-        model->spacing = fmin(model->spacing, length);
     }
     return CK_OK;
 }
 
+static const char *const kind_names[CK_SPRING_KINDS] = {"structural", "shear", "bend"};
+
+static ck_Status add_own_spring(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
+    const ck_SceneNetworkSpring *from = &scene->file->network->springs[index];
+    char path[60];
+    int kind = 0;
+    snprintf(path, sizeof path, "network.springs[%u]", index);
+    ck_Status status = check_ends(model, scene, from->ends, path, error);
+    if (status) return status;
+    while (from->kind && kind < CK_SPRING_KINDS && strcmp(from->kind, kind_names[kind])) kind++;
+    if (kind == CK_SPRING_KINDS)
+        return ck_scene_fail(scene, path, error, "its kind is %s; it must be structural, shear or bend", from->kind);
+    if (from->rigid == (from->stiffness > 0) || (from->rigid && from->damping > 0))
+        return ck_scene_fail(
+            scene, path, error,
+            "it needs either a stiffness above 0, or rigid: true and no damping, which would do nothing");
+    // engines have bars or springs, not both
+    if (model->spring_count && isinf(model->springs[0].stiffness) != from->rigid)
+        return ck_scene_fail(scene, path, error, "it is %s where those before are not; make all alike",
+                             from->rigid ? "rigid" : "a spring");
+    const int a = (int)from->ends[0], b = (int)from->ends[1];
+    double length = ck_distance(model->position + 3 * a, model->position + 3 * b);
+    model->springs[model->spring_count++] = (ck_Spring){.a = a,
+                                                        .b = b,
+                                                        .rest = from->rest > 0 ? from->rest : length,
+                                                        .stiffness = from->rigid ? INFINITY : from->stiffness,
+                                                        .damping = from->damping,
+                                                        .kind = (ck_SpringKind)kind};
+    return CK_OK;
+}
+
+// Lengths of a network: what it says of them, or what its nodes and springs are.
+static void set_lengths(ck_Model *model, const ck_SceneNetwork *network) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int i = 0; i < 3 * model->particle_count; i++) {
+        low[i % 3] = fmin(low[i % 3], model->position[i]);
+        high[i % 3] = fmax(high[i % 3], model->position[i]);
+    }
+    model->size = network->size > 0 ? network->size : ck_distance(low, high);
+    if (!(model->size > 0)) model->size = 1; // a single node has no extent of its own
+    model->spacing = model->spring_count ? INFINITY : model->size;
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        model->spacing =
+            fmin(model->spacing, ck_distance(model->position + 3 * spring->a, model->position + 3 * spring->b));
+    }
+    if (network->spacing > 0) model->spacing = network->spacing;
+}
+
 static ck_Status build_network(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneNetwork *network = scene->file->network;
-    ck_Status status = allocate(model, scene, "network", network->nodes_count, network->bars_count, error);
+    double springs = (double)network->bars_count + network->springs_count;
+    ck_Status status = allocate(model, scene, "network", network->nodes_count, springs, error);
     if (status) return status;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int i = 0; i < model->particle_count; i++) {
         memcpy(model->position + 3 * i, network->nodes[i].at, 3 * sizeof(double));
         model->mass[i] = network->nodes[i].mass;
-        for (int axis = 0; axis < 3; axis++) {
-            low[axis] = fmin(low[axis], network->nodes[i].at[axis]);
-            high[axis] = fmax(high[axis], network->nodes[i].at[axis]);
-        }
     }
     model->body = CK_NETWORK;
-    model->size = ck_distance(low, high);
-    if (!(model->size > 0)) model->size = 1; // a single node has no extent of its own
-    return build_bars(model, scene, error);
+    status = build_bars(model, scene, error);
+    for (uint32_t i = 0; i < network->springs_count && !status; i++) status = add_own_spring(model, scene, i, error);
+    if (!status) set_lengths(model, network);
+    return status;
 }
 
 // Some direction at right angles to a line, [3].

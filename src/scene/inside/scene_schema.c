@@ -15,6 +15,11 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"rope.mass", CK_RANGE_POSITIVE},
     {"rope.end_mass", CK_RANGE_NOT_NEGATIVE},
     {"network.nodes[].mass", CK_RANGE_POSITIVE},
+    {"network.springs[].stiffness", CK_RANGE_NOT_NEGATIVE},
+    {"network.springs[].damping", CK_RANGE_NOT_NEGATIVE},
+    {"network.springs[].rest", CK_RANGE_POSITIVE},
+    {"network.size", CK_RANGE_POSITIVE},
+    {"network.spacing", CK_RANGE_POSITIVE},
     {"springs.stiffness", CK_RANGE_NOT_NEGATIVE},
     {"springs.damping", CK_RANGE_NOT_NEGATIVE},
     {"springs.shear", CK_RANGE_NOT_NEGATIVE},
@@ -67,15 +72,32 @@ static const cyaml_schema_field_t rope_fields[] = {
 static const cyaml_schema_field_t node_fields[] = {
     CYAML_FIELD_SEQUENCE_FIXED("at", REQUIRED, ck_SceneNode, at, &number, 3),
     CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneNode, mass),
+    CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNode, velocity, &number, 3),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t node = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneNode, node_fields)};
 
+static const cyaml_schema_field_t network_spring_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("ends", REQUIRED, ck_SceneNetworkSpring, ends, &index_pair_entry, 2),
+    CYAML_FIELD_FLOAT("stiffness", OPTIONAL, ck_SceneNetworkSpring, stiffness),
+    CYAML_FIELD_FLOAT("damping", OPTIONAL, ck_SceneNetworkSpring, damping),
+    CYAML_FIELD_FLOAT("rest", OPTIONAL, ck_SceneNetworkSpring, rest),
+    CYAML_FIELD_BOOL("rigid", OPTIONAL, ck_SceneNetworkSpring, rigid),
+    CYAML_FIELD_STRING_PTR("kind", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetworkSpring, kind, 1, 20),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t network_spring = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneNetworkSpring, network_spring_fields)};
+
 static const cyaml_schema_field_t network_fields[] = {
     CYAML_FIELD_SEQUENCE("nodes", REQUIRED | CYAML_FLAG_POINTER, ck_SceneNetwork, nodes, &node, 1,
                          CK_SCENE_MAX_PARTICLES),
-    CYAML_FIELD_SEQUENCE("bars", REQUIRED | CYAML_FLAG_POINTER, ck_SceneNetwork, bars, &index_pair, 0,
+    CYAML_FIELD_SEQUENCE("bars", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, bars, &index_pair, 0,
                          CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_SEQUENCE("springs", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, springs, &network_spring, 0,
+                         CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_FLOAT("size", OPTIONAL, ck_SceneNetwork, size),
+    CYAML_FIELD_FLOAT("spacing", OPTIONAL, ck_SceneNetwork, spacing),
     CYAML_FIELD_END,
 };
 

@@ -1,9 +1,9 @@
 // The studies of a scene that run a list of cases.
+#include "studies.h"
 #include "fit.h"
 #include "needs.h"
 #include "precision.h"
 #include "stability_study.h"
-#include "studies.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-#include "command.h"
 #include "report.h"
+#include "command.h"
 
 #include <stdio.h>
 #include <string.h>

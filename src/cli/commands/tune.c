@@ -1,9 +1,9 @@
+#include "tune.h"
 #include "files.h"
 #include "names.h"
 #include "process.h"
 #include "recording.h"
 #include "studies.h"
-#include "tune.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,176 @@
+#include "export.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const ck_export_kinds[CK_SPRING_KINDS] = {"structural", "shear", "bend"};
+
+static ck_Status end_of(FILE *out, ck_Error *error) {
+    return fflush(out) || ferror(out) ? ck_fail(error, CK_IO, "cannot write the scene: %s", strerror(errno)) : CK_OK;
+}
+
+// What is written of JSON, a part a line, so that people can read it.
+typedef struct Writer {
+    FILE *out;
+    bool has_failed; // for lack of memory
+} Writer;
+
+// Writes a value, which it takes over, after a text and before another.
+static void put(Writer *writer, const char *before, json_t *value, const char *after) {
+    char *text = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17)) : NULL;
+    writer->has_failed |= !text;
+    fprintf(writer->out, "%s%s%s", before, text ? text : "", after);
+    free(text);
+    json_decref(value);
+}
+
+static json_t *vector_of(const double *vector) {
+    return json_pack("[f, f, f]", vector[0], vector[1], vector[2]);
+}
+
+static json_t *node_of(const ck_Model *model, int particle) {
+    const double *velocity = model->velocity + 3 * particle;
+    json_t *node =
+        json_pack("{s:o, s:f}", "at", vector_of(model->position + 3 * particle), "mass", model->mass[particle]);
+    bool moves = velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0;
+    if (moves && node && json_object_set_new(node, "velocity", vector_of(velocity))) return NULL;
+    return node;
+}
+
+static json_t *spring_of(const ck_Spring *spring) {
+    if (isinf(spring->stiffness))
+        return json_pack("{s:[i, i], s:f, s:b, s:s}", "ends", spring->a, spring->b, "rest", spring->rest, "rigid", 1,
+                         "kind", ck_export_kinds[spring->kind]);
+    return json_pack("{s:[i, i], s:f, s:f, s:f, s:s}", "ends", spring->a, spring->b, "rest", spring->rest, "stiffness",
+                     spring->stiffness, "damping", spring->damping, "kind", ck_export_kinds[spring->kind]);
+}
+
+static json_t *collider_of(const ck_Collider *collider) {
+    if (collider->shape == CK_SPHERE)
+        return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(collider->point), "radius",
+                         collider->radius, "restitution", collider->restitution, "friction", collider->friction);
+    return json_pack("{s:{s:o, s:o, s:f, s:f}}", "plane", "point", vector_of(collider->point), "normal",
+                     vector_of(collider->normal), "restitution", collider->restitution, "friction", collider->friction);
+}
+
+static void put_network(Writer *writer, const ck_Model *model) {
+    put(writer, "\"network\": {\"size\": ", json_real(model->size), ", ");
+    put(writer, "\"spacing\": ", json_real(model->spacing), ",\n \"nodes\": [");
+    for (int i = 0; i < model->particle_count; i++) put(writer, i ? ",\n  " : "\n  ", node_of(model, i), "");
+    fprintf(writer->out, "],\n \"springs\": [");
+    for (int i = 0; i < model->spring_count; i++) put(writer, i ? ",\n  " : "\n  ", spring_of(&model->springs[i]), "");
+    fprintf(writer->out, "]}");
+}
+
+static void put_pins(Writer *writer, const ck_Model *model) {
+    json_t *pins = json_array();
+    for (int i = 0; i < model->particle_count; i++)
+        if (model->pinned[i]) writer->has_failed |= json_array_append_new(pins, json_integer(i)) != 0;
+    if (json_array_size(pins))
+        put(writer, ",\n\"pins\": ", pins, "");
+    else
+        json_decref(pins);
+}
+
+static void put_releases(Writer *writer, const ck_Model *model) {
+    for (int i = 0; i < model->release_count; i++) {
+        const ck_Release *release = &model->releases[i];
+        json_t *pins = json_array();
+        for (int k = 0; k < release->particle_count; k++)
+            writer->has_failed |= json_array_append_new(pins, json_integer(release->particles[k])) != 0;
+        put(writer, i ? ",\n  " : ",\n\"release\": [\n  ", json_pack("{s:f, s:o}", "at", release->at, "pins", pins),
+            i + 1 == model->release_count ? "]" : "");
+    }
+}
+
+// A closed form is of a rope or a cloth by that name, which a network is not.
+static bool truth_goes_along(const ck_Model *model) {
+    static const char *const general[] = {"equilibrium", "trajectory", "rest"};
+    for (size_t i = 0; model->truth && i < sizeof general / sizeof *general; i++)
+        if (!strcmp(model->truth, general[i])) return true;
+    return false;
+}
+
+static void put_fields(Writer *writer, const ck_Model *model) {
+    if (model->terms & CK_TERM_GRAVITY) put(writer, ",\n\"gravity\": ", vector_of(model->gravity), "");
+    if (model->terms & CK_TERM_FORCE) put(writer, ",\n\"force\": ", vector_of(model->force), "");
+    if (model->drag > 0) put(writer, ",\n\"drag\": ", json_real(model->drag), "");
+    for (int i = 0; i < model->collider_count; i++)
+        put(writer, i ? ",\n  " : ",\n\"colliders\": [\n  ", collider_of(&model->colliders[i]),
+            i + 1 == model->collider_count ? "]" : "");
+    put_releases(writer, model);
+    put(writer, ",\n\"time\": ", json_pack("{s:f, s:f}", "duration", model->duration, "step", model->step), "");
+    if (truth_goes_along(model)) put(writer, ",\n\"truth\": ", json_string(model->truth), "");
+    json_t *measure = model->measure_count ? json_array() : NULL;
+    for (int i = 0; i < model->measure_count; i++)
+        writer->has_failed |= json_array_append_new(measure, json_string(model->measure[i])) != 0;
+    if (measure) put(writer, ",\n\"measure\": ", measure, "");
+}
+
+ck_Status ck_export_json(FILE *out, const ck_Model *model, ck_Error *error) {
+    Writer writer = {.out = out};
+    put(&writer, "{\"name\": ", json_string(model->name), ",\n");
+    put_network(&writer, model);
+    put_pins(&writer, model);
+    put_fields(&writer, model);
+    fprintf(out, "}\n");
+    return writer.has_failed ? ck_fail(error, CK_NO_MEMORY, "out of memory") : end_of(out, error);
+}
+
+ck_Status ck_export_obj(FILE *out, const ck_Model *model, ck_Error *error) {
+    fprintf(out, "# %s: metres; springs are lines, cells of a cloth are faces\no %s\n", model->name, model->name);
+    for (int i = 0; i < model->particle_count; i++)
+        fprintf(out, "v %.17g %.17g %.17g\n", model->position[3 * i], model->position[3 * i + 1],
+                model->position[3 * i + 2]);
+    int columns = model->columns, rows = columns ? model->particle_count / columns : 0;
+    for (int row = 0; row + 1 < rows; row++)
+        for (int column = 0; column + 1 < columns; column++) {
+            int first = row * columns + column + 1;
+            fprintf(out, "f %d %d %d %d\n", first, first + columns, first + columns + 1, first + 1);
+        }
+    for (int i = 0; i < model->spring_count && !rows; i++)
+        if (model->springs[i].kind == CK_STRUCTURAL)
+            fprintf(out, "l %d %d\n", model->springs[i].a + 1, model->springs[i].b + 1);
+    return end_of(out, error);
+}
+
+static void line(FILE *out, const char *word, const double *numbers, int count) {
+    fprintf(out, "%s", word);
+    for (int i = 0; i < count; i++) fprintf(out, " %.17g", numbers[i]);
+    fprintf(out, "\n");
+}
+
+void ck_export_lines(FILE *out, const ck_Model *model) {
+    fprintf(out, "scene %s\nframes %d\n", model->name, model->frame_count);
+    line(out, "step", &model->step, 1);
+    line(out, "gravity", model->gravity, 3);
+    line(out, "force", model->force, 3);
+    line(out, "drag", &model->drag, 1);
+    fprintf(out, "particles %d\n", model->particle_count);
+    for (int i = 0; i < model->particle_count; i++) {
+        const double *x = model->position + 3 * i, *v = model->velocity + 3 * i;
+        fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %d\n", x[0], x[1], x[2], v[0], v[1], v[2],
+                model->mass[i], model->pinned[i]);
+    }
+    fprintf(out, "springs %d\n", model->spring_count);
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        fprintf(out, "%d %d %.17g %.17g %.17g %s\n", spring->a, spring->b, spring->rest, spring->stiffness,
+                spring->damping, ck_export_kinds[spring->kind]);
+    }
+    fprintf(out, "colliders %d\n", model->collider_count);
+    for (int i = 0; i < model->collider_count; i++) {
+        const ck_Collider *collider = &model->colliders[i];
+        const double *at = collider->point, *n = collider->normal;
+        const double ball[] = {at[0], at[1], at[2], collider->radius, collider->restitution, collider->friction},
+                     plane[] = {at[0], at[1], at[2], n[0], n[1], n[2], collider->restitution, collider->friction};
+        if (collider->shape == CK_SPHERE)
+            line(out, "sphere", ball, 6);
+        else
+            line(out, "plane", plane, 8);
+    }
+}
