@@ -1,5 +1,6 @@
 #include "process.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <poll.h>
 #include <pthread.h>
@@ -51,7 +52,13 @@ static size_t resident_bytes(pid_t child) {
     return resident * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-static _Noreturn void be_child(void (*work)(void *), void *context, int output, int alive) {
+// In the environment of all programs that a child starts, with the child's number.
+#define MARK "CLOTHCHECK_RUN"
+
+static _Noreturn void be_child(void (*work)(void *), void *context, int output, int alive, bool spawns) {
+    char number[20];
+    snprintf(number, sizeof number, "%d", (int)getpid());
+    if (spawns) setenv(MARK, number, 1);
     prctl(PR_SET_PDEATHSIG, SIGKILL); // an interrupted comparison leaves no solver running
     prctl(PR_SET_NAME, "clothcheck-run");
     dup2(output, STDOUT_FILENO);
@@ -89,6 +96,35 @@ static void read_last_line(char *line, size_t size, int output) {
     snprintf(line, size, "%.*s", (int)size - 1, last ? last + 1 : text);
 }
 
+// True where a process was started with the mark of a child.
+static bool has_mark(const char *process, const char *mark) {
+    char path[64], text[16384];
+    snprintf(path, sizeof path, "/proc/%.20s/environ", process);
+    FILE *file = fopen(path, "r");
+    size_t length = file ? fread(text, 1, sizeof text, file) : 0, size = strlen(mark) + 1;
+    if (file) fclose(file);
+    for (size_t i = 0; i + size <= length; i++)
+        if ((!i || !text[i - 1]) && !memcmp(text + i, mark, size)) return true;
+    return false;
+}
+
+// Ends what programs of a child have left running, whoever its parent is by now, and waits until it is gone. What it
+// starts meanwhile is found in the next round.
+static void end_strays(pid_t child) {
+    char mark[40];
+    snprintf(mark, sizeof mark, MARK "=%d", (int)child);
+    for (int round = 0, found = 1; round < 200 && found; round++) {
+        if (round) nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+        DIR *processes = opendir("/proc");
+        found = 0;
+        for (struct dirent *entry; processes && (entry = readdir(processes));) {
+            if (entry->d_name[0] < '1' || entry->d_name[0] > '9' || !has_mark(entry->d_name, mark)) continue;
+            found += !kill((pid_t)atoi(entry->d_name), SIGKILL);
+        }
+        if (processes) closedir(processes);
+    }
+}
+
 static void describe(ck_ChildResult *result, int status, const ck_Limits *limits, int output) {
     if (result->end == CK_CHILD_DONE && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
     char line[120];
@@ -124,7 +160,7 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     // else what is buffered here would be printed twice
     fflush(NULL);
     pid_t child = fork();
-    if (child == 0) be_child(work, context, output, alive[1]);
+    if (child == 0) be_child(work, context, output, alive[1], limits->spawns);
     close(alive[1]);
     alive[1] = -1;
     pthread_mutex_unlock(&starting);
@@ -138,6 +174,7 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     struct rusage usage = {0};
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
+    if (limits->spawns) end_strays(child);
     describe(result, wait_status, limits, output);
     if (!status) status = ck_child_check(error);
 cleanup:

@@ -3,11 +3,15 @@
 #define CK_COMMAND_H
 
 #include "answer.h"
+#include "check.h"
 #include "comparison.h"
 
 #define CK_EXIT_OK 0
 #define CK_EXIT_FAILED 1 // a check failed
 #define CK_EXIT_USAGE 2  // wrong usage or input
+
+// Where check has its baseline, where --baseline does not say.
+#define CK_BASELINE_PATH "tests/baseline/metrics.csv"
 
 // What a command takes on its command line.
 typedef enum ck_ArgumentGroup {
@@ -77,6 +81,9 @@ typedef struct ck_Arguments {
     char *validate[16]; // paths, owned
     int validate_count;
     bool is_update;
+    const char *baseline; // of check
+    ck_Tolerance tolerances[16];
+    int tolerance_count;
     ck_Answer answer; // begun
     char **scenes;    // paths, owned with their texts
     int scene_count;

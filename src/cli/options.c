@@ -1,6 +1,7 @@
 #include "command.h"
 
 #include "names.h"
+#include "outside.h"
 
 #include <errno.h>
 #include <fnmatch.h>
@@ -35,6 +36,7 @@ static ck_Status set_seed(ck_Arguments *arguments, const char *text, ck_Error *e
 static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status add_tolerance(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_markdown(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error);
@@ -45,7 +47,8 @@ static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Er
 static const Option table[] = {
     {"out", "DIR", 'o', CK_TAKES_OUT, TEXT, PLACE(out), .help = "write the CSVs into DIR", .is_way = true},
     {"engine", "NAME", 'e', CK_TAKES_RUNS, OTHER, .fallback = "all", .read = add_engines,
-     .help = "only this engine, or those of a pattern as 'bullet-*'; may be given several times"},
+     .help = "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
+             "--fast', or a library as ./libmine.so; may be given several times"},
     {"set", "ENGINE.KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
      .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
     {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,
@@ -103,6 +106,11 @@ static const Option table[] = {
     {"interval", "S", 0, CK_TAKES_RECORDING, NUMBER, PLACE(interval), 1e-12, 1e9, .fallback = "the scene's step",
      .help = "seconds between the frames of a .npy"},
     {"format", "FORMAT", 0, CK_TAKES_FORMAT, TEXT, PLACE(format), .fallback = "json", .help = "json, csv or obj"},
+    {"baseline", "FILE", 0, CK_TAKES_UPDATE, TEXT, PLACE(baseline), .fallback = CK_BASELINE_PATH,
+     .help = "what was measured before"},
+    {"tolerance", "X%|METRIC=X", 0, CK_TAKES_UPDATE, OTHER, .read = add_tolerance,
+     .help = "how far results may move besides their bands: a share of every metric, as 1%, or of one in its unit, as "
+             "stretch_max=0.01; may be given several times"},
     {"update", NULL, 0, CK_TAKES_UPDATE, FLAG, PLACE(is_update),
      .help = "write the baseline anew, and print what moved"},
     {"append", NULL, 'a', CK_TAKES_KEEPING, FLAG, PLACE(appends), .is_way = true,
@@ -183,7 +191,26 @@ static void add_engine(ck_Arguments *arguments, const ck_Engine *engine) {
     arguments->engines[options->engine_count++] = engine;
 }
 
+static bool is_library(const char *text) {
+    size_t length = strlen(text);
+    return length > 3 && !strcmp(text + length - 3, ".so") && !strchr(text, ' ');
+}
+
+// NAME=COMMAND, NAME=LIBRARY.so or LIBRARY.so.
+static ck_Status add_outside(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    char name[64];
+    ck_Engine *engine;
+    const char *equals = strchr(text, '='), *rest = equals ? equals + 1 : text;
+    snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - text) : 0, text);
+    ck_Status status = is_library(rest) ? ck_outside_library(&engine, equals ? name : NULL, rest, error)
+                                        : ck_outside_command(&engine, name, rest, error);
+    if (!status) status = ck_engines_add(engine, error);
+    if (!status) add_engine(arguments, engine);
+    return status;
+}
+
 static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    if (strchr(text, '=') || is_library(text)) return add_outside(arguments, text, error);
     int found = 0;
     for (int i = 0; i < ck_engine_count(); i++)
         if (!fnmatch(text, ck_engine_at(i)->name, 0)) {
@@ -268,6 +295,24 @@ static ck_Status read_shard(ck_Arguments *arguments, const char *text, ck_Error 
         arguments->shard >= 1 && arguments->shard <= arguments->shards && arguments->shards <= 10000)
         return CK_OK;
     return ck_fail(error, CK_BAD_INPUT, "--shard %s: it must read I/N with 1 <= I <= N, as in 2/4", text);
+}
+
+static ck_Status add_tolerance(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    const char *equals = strchr(text, '=');
+    char name[40], *end;
+    snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - text) : 0, text);
+    const ck_Metric *metric = equals ? ck_metric_find(name) : NULL;
+    double value = strtod(equals ? equals + 1 : text, &end);
+    bool is_share = !strcmp(end, "%");
+    if (!(value >= 0) || !isfinite(value) || end == (equals ? equals + 1 : text) || (*end && !is_share) ||
+        (equals ? !metric : !is_share))
+        return ck_fail(error, CK_BAD_INPUT,
+                       "--tolerance %s: it must read X%%, METRIC=X or METRIC=X%%, as in 1%% or stretch_max=0.01", text);
+    if (arguments->tolerance_count == sizeof arguments->tolerances / sizeof *arguments->tolerances)
+        return ck_fail(error, CK_BAD_INPUT, "--tolerance is given more than %d times", arguments->tolerance_count);
+    arguments->tolerances[arguments->tolerance_count++] =
+        (ck_Tolerance){metric ? metric->name : NULL, is_share ? value / 100 : value, is_share};
+    return CK_OK;
 }
 
 static ck_Status set_form(ck_Arguments *arguments, ck_AnswerForm form, ck_Error *error) {
@@ -383,6 +428,7 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
                                 .frame_cost = NAN,
                                 .rounds = 7,
                                 .largest = 1024,
+                                .baseline = CK_BASELINE_PATH,
                                 .out = command->out};
     arguments->options.overrides = arguments->overrides;
     arguments->command = command;

@@ -42,6 +42,9 @@ typedef struct ck_Outside {
     const char *arguments; // what a command line names it by, after clothcheck run SCENE
     bool is_recorded;      // what it does is fixed: it is not run again, at another step or to be timed
     double frame_cost;     // s of CPU that a frame cost where it was recorded; NaN: not known
+    // s of CPU that it has used so far, where it works in another process; NULL: it works in this one.
+    double (*cpu)(const void *state);
+    bool spawns; // it starts a program
 } ck_Outside;
 
 typedef struct ck_Engine {
@@ -52,6 +55,7 @@ typedef struct ck_Engine {
     ck_Method method;
     unsigned terms;             // ck_Term bits it can model
     const ck_Setting *settings; // ends with a NULL name; NULL: it has none
+    bool is_single;             // it computes in single precision
     int order;                  // order of convergence of its elastic motion; 0: it models no elasticity
     int rest_order;             // of its rest; 0: it is exact at any step, or models no elasticity
     int damped_rest_order;      // of its rest where springs are damped

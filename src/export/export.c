@@ -145,7 +145,7 @@ static void line(FILE *out, const char *word, const double *numbers, int count) 
 }
 
 void ck_export_lines(FILE *out, const ck_Model *model) {
-    fprintf(out, "scene %s\nframes %d\n", model->name, model->frame_count);
+    fprintf(out, "frames %d\n", model->frame_count);
     line(out, "step", &model->step, 1);
     line(out, "gravity", model->gravity, 3);
     line(out, "force", model->force, 3);

@@ -90,7 +90,9 @@ ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double bu
     Result *result = ck_shared_allocate(sizeof *result);
     if (!result) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
-    ck_Status status = ck_child_run(&child, restart_pieces, &(Job){run, result}, limits, error);
+    ck_Limits own = *limits;
+    own.spawns = run->engine->outside && run->engine->outside->spawns;
+    ck_Status status = ck_child_run(&child, restart_pieces, &(Job){run, result}, &own, error);
     for (int i = 0; i < CK_CONSISTENCY_STEPS && !status && child.end == CK_CHILD_DONE; i++)
         if (result->pieces[i]) deviation[i] = result->deviation[i] / result->pieces[i];
     ck_shared_free(result, sizeof *result);

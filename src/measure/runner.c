@@ -60,6 +60,20 @@ static bool is_too_slow(const Job *job) {
     return foresee(report, job->frames) > 1.2 * patience;
 }
 
+static double cpu_of(const ck_Engine *engine, const void *state) {
+    return engine->outside && engine->outside->cpu ? engine->outside->cpu(state) : ck_process_cpu();
+}
+
+// Others tell by themselves.
+static bool is_finite(const ck_Run *run, int frame) {
+    const ck_Trajectory *path = &run->trajectory;
+    bool is_finite = true;
+    for (int i = 0; i < 3 * path->particle_count && run->engine->outside && is_finite; i++)
+        is_finite =
+            isfinite(ck_trajectory_position(path, frame)[i]) && isfinite(ck_trajectory_velocity(path, frame)[i]);
+    return is_finite;
+}
+
 static void measure(void *context) {
     const Job *job = context;
     const ck_Engine *engine = job->run->engine;
@@ -69,11 +83,14 @@ static void measure(void *context) {
     ck_engine_read(engine, state, &job->run->trajectory, 0);
     report->frame_count = 1;
     while (report->frame_count <= job->frames) {
-        double start = ck_process_cpu();
+        double start = cpu_of(engine, state);
         report->step = ck_engine_advance(engine, state, job->run->model, report->frame_count - 1);
-        report->cpu += ck_process_cpu() - start;
+        report->cpu += cpu_of(engine, state) - start;
         if (report->step) break;
-        ck_engine_read(engine, state, &job->run->trajectory, report->frame_count++);
+        ck_engine_read(engine, state, &job->run->trajectory, report->frame_count);
+        if (!is_finite(job->run, report->frame_count)) report->step = CK_STEP_DIVERGED;
+        if (report->step) break;
+        report->frame_count++;
         if (is_hopeless(job)) break;
         if (is_too_slow(job)) report->is_cut = true;
         if (report->is_cut) break;
@@ -94,9 +111,9 @@ static void time_frames(void *context) {
     state = create(job);
     if (report->status) return;
     for (int i = 0; i < job->frames; i++) {
-        double start = ck_process_cpu();
+        double start = cpu_of(engine, state);
         report->step = ck_engine_advance(engine, state, job->run->model, i);
-        double cpu = ck_process_cpu() - start;
+        double cpu = cpu_of(engine, state) - start;
         report->cpu += cpu;
         report->worst_step = fmax(report->worst_step, cpu);
         if (report->step) break;
@@ -191,6 +208,7 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
     ck_Limits own = *limits;
+    own.spawns = engine->outside && engine->outside->spawns;
     if (limits->patience > 0) own.seconds = fmin(limits->seconds, WAIT_OF_PATIENCE * limits->patience);
     ck_Status status = ck_child_run(&child, measure, &(Job){run, report, model->frame_count, &own}, &own, error);
     if (!status) conclude(run, report, &child, &own, limits->seconds);
@@ -225,7 +243,9 @@ ck_Status ck_run_time(ck_Run *run, double budget, const ck_Limits *limits, ck_Er
     if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_ChildResult child;
     double start = ck_wall();
-    ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames, limits}, limits, error);
+    ck_Limits own = *limits;
+    own.spawns = run->engine->outside && run->engine->outside->spawns;
+    ck_Status status = ck_child_run(&child, time_frames, &(Job){run, report, timing->frames, &own}, &own, error);
     if (!status && child.end == CK_CHILD_DONE && !report->status && !report->step) {
         timing->cpu[timing->repeat_count++] = report->cpu;
         timing->worst_step = fmax(timing->worst_step, report->worst_step);

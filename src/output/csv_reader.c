@@ -144,11 +144,19 @@ static ck_Status parse(Reader *reader, const char *bytes, size_t size) {
 }
 
 ck_Status ck_csv_table_read(ck_CsvTable *table, const char *directory, const ck_Layout *layout, ck_Error *error) {
+    *table = (ck_CsvTable){0};
+    char *path = ck_path_join(directory, layout->file);
+    ck_Status status =
+        path ? ck_csv_table_read_file(table, path, layout, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    free(path);
+    return status;
+}
+
+ck_Status ck_csv_table_read_file(ck_CsvTable *table, const char *path, const ck_Layout *layout, ck_Error *error) {
     *table = (ck_CsvTable){.layout = layout, .column_count = ck_layout_column_count(layout)};
-    char *path = ck_path_join(directory, layout->file), *bytes = NULL;
+    char *bytes = NULL;
     size_t size;
-    ck_Status status = path ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!status) status = ck_file_read(&bytes, &size, path, error);
+    ck_Status status = ck_file_read(&bytes, &size, path, error);
     if (!status && !size)
         status = ck_fail(error, CK_BAD_INPUT, "%s:1: the file is empty; its first line must begin with %s", path,
                          layout->columns[0].name);
@@ -160,7 +168,6 @@ ck_Status ck_csv_table_read(ck_CsvTable *table, const char *directory, const ck_
         table->row_count = status ? 0 : (int)(reader.count / (size_t)table->column_count) - 1;
     }
     free(bytes);
-    free(path);
     return status;
 }
 

@@ -17,6 +17,9 @@ typedef struct ck_CsvTable {
 // Errors: CK_BAD_INPUT, CK_IO where it cannot be read, CK_NO_MEMORY. Free with ck_csv_table_free in any case.
 ck_Status ck_csv_table_read(ck_CsvTable *table, const char *directory, const ck_Layout *layout, ck_Error *error);
 
+// The same of a file of another name.
+ck_Status ck_csv_table_read_file(ck_CsvTable *table, const char *path, const ck_Layout *layout, ck_Error *error);
+
 // Accepts a zeroed table.
 void ck_csv_table_free(ck_CsvTable *table);
 

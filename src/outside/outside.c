@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 ck_OutsideEngine *ck_outside_new(const char *name) {
     ck_OutsideEngine *made = calloc(1, sizeof *made);
@@ -15,6 +16,17 @@ ck_OutsideEngine *ck_outside_new(const char *name) {
                                .method = CK_METHOD_UNKNOWN,
                                .outside = &made->outside};
     return made;
+}
+
+void ck_outside_option(ck_OutsideEngine *made, const char *name, const char *line) {
+    char *out = made->arguments, *end = out + sizeof made->arguments - 6;
+    out += snprintf(out, sizeof made->arguments / 2, "--engine '%.60s=", name);
+    for (; *line && out < end; line++) {
+        // a quote ends the quotes, stands by itself, and begins them anew
+        if (*line == '\'') out = stpcpy(out, "'\\'");
+        *out++ = *line;
+    }
+    strcpy(out, "'");
 }
 
 void ck_outside_free(ck_Engine *engine) {

@@ -10,6 +10,18 @@
 ck_Status ck_outside_recording(ck_Engine **engine, const char *name, const char *path, double interval,
                                double frame_cost, const ck_Model *model, ck_Error *error);
 
+// Starts a command and asks what it is; runs start it again.
+//   line  as a shell reads it
+// Errors: CK_BAD_INPUT where it does not answer as it must, with its last words; CK_IO, CK_NO_MEMORY. Free with
+// ck_outside_free.
+ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *line, ck_Error *error);
+
+// Loads a shared library that has a ck_Plugin (plugin.h), in processes of their own.
+//   name  NULL: its engine's
+// Errors: CK_BAD_INPUT where it cannot be loaded or is of another interface; CK_IO, CK_NO_MEMORY. Free with
+// ck_outside_free.
+ck_Status ck_outside_library(ck_Engine **engine, const char *name, const char *path, ck_Error *error);
+
 // Accepts NULL.
 void ck_outside_free(ck_Engine *engine);
 

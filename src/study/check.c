@@ -10,6 +10,8 @@
 #include <string.h>
 
 #define NUDGE 1e-12
+// A float has 24 bits, and a coordinate may be as large as the size: some ten units in its last place.
+#define SINGLE_NUDGE 1e-6
 // Starts that are nudged: one alone may leave a chaotic run's metric by chance where it was.
 #define NUDGES 3
 
@@ -36,16 +38,14 @@ static bool value_name(int index, char *name, size_t size) {
 }
 _Static_assert(VALUES + 2 * CK_METRIC_CAPACITY <= CK_JOURNAL_VALUES, "raise CK_JOURNAL_VALUES");
 
-ck_Status ck_baseline_read(ck_Baseline *baseline, const char *directory, ck_Error *error) {
+ck_Status ck_baseline_read(ck_Baseline *baseline, const char *path, ck_Error *error) {
     *baseline = (ck_Baseline){0};
     ck_CsvTable table;
-    ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_BASELINE], error);
+    ck_Status status = ck_csv_table_read_file(&table, path, &ck_layouts[CK_BASELINE], error);
     if (status == CK_IO)
-        status = ck_fail(error, CK_BAD_INPUT, "%s/%s: cannot be read; 'clothcheck check --update' writes it", directory,
-                         ck_layouts[CK_BASELINE].file);
+        status = ck_fail(error, CK_BAD_INPUT, "%s: cannot be read; 'clothcheck check --update' writes it", path);
     if (!status && !table.row_count)
-        status = ck_fail(error, CK_BAD_INPUT, "%s/%s: holds no rows; 'clothcheck check --update' writes it", directory,
-                         ck_layouts[CK_BASELINE].file);
+        status = ck_fail(error, CK_BAD_INPUT, "%s: holds no rows; 'clothcheck check --update' writes it", path);
     if (!status && !(baseline->rows = calloc((size_t)table.row_count, sizeof *baseline->rows)))
         status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     for (int i = 0; i < table.row_count && !status; i++) {
@@ -80,8 +80,8 @@ static void describe(const void *context, int index, char *key, size_t size) {
     snprintf(key, size, "%s %s", one->comparison->model.name, one->engine->name);
 }
 
-double ck_check_band(double value, double nudged) {
-    return 10 * fabs(nudged - value) + 1e-10 * fabs(value) + 1e-13;
+double ck_check_band(double value, double nudged, bool is_single) {
+    return 10 * fabs(nudged - value) + (is_single ? 1e-5 : 1e-10) * fabs(value) + (is_single ? 1e-8 : 1e-13);
 }
 
 static ck_Status measure(const ck_Check *check, const ck_CheckCase *one, const ck_Model *model,
@@ -100,7 +100,7 @@ static ck_Status measure_nudged(const ck_Check *check, const ck_CheckCase *one, 
     if (!position) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     ck_Random random = ck_random_seed(seed);
     for (size_t i = 0; i < count; i++) {
-        double off = NUDGE * model.size * (2 * ck_random_unit(&random) - 1);
+        double off = (one->engine->is_single ? SINGLE_NUDGE : NUDGE) * model.size * (2 * ck_random_unit(&random) - 1);
         position[i] = model.position[i] + (model.pinned[i / 3] ? 0 : off);
     }
     model.position = position;
@@ -123,7 +123,8 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     for (int nudge = 0; nudge < NUDGES && !status; nudge++) {
         status = measure_nudged(check, one, 3 + (uint64_t)nudge, &nudged, error);
         for (int i = 0; i < ck_metric_count() && !status; i++) {
-            double *widest = &row->values[band_at(i)], band = ck_check_band(now.values[i], nudged.values[i]);
+            double *widest = &row->values[band_at(i)],
+                   band = ck_check_band(now.values[i], nudged.values[i], one->engine->is_single);
             if (nudge == 0 || isnan(band) || band > *widest) *widest = band;
         }
     }
@@ -139,21 +140,33 @@ static int compare_deviations(const void *a, const void *b) {
     return (x < y) - (x > y);
 }
 
-int ck_check_compare(const ck_CheckCase *one, const ck_JournalRow *row, const ck_Baseline *baseline,
+// The most that a metric may have moved.
+static double allowed_of(const ck_Check *check, const ck_BaselineRow *was) {
+    double allowed = was->band;
+    for (int i = 0; i < check->tolerance_count; i++) {
+        const ck_Tolerance *tolerance = &check->tolerances[i];
+        if (tolerance->metric && strcmp(tolerance->metric, was->metric)) continue;
+        allowed = fmax(allowed, tolerance->value * (tolerance->is_relative ? fabs(was->value) : 1));
+    }
+    return allowed;
+}
+
+int ck_check_compare(const ck_Check *check, int index, const ck_JournalRow *row, const ck_Baseline *baseline,
                      ck_Deviation *deviations) {
     int count = 0;
+    const ck_CheckCase *one = &check->cases[index];
     const char *status = ck_run_status_names[row->status];
     for (int i = 0; i < baseline->count; i++) {
         const ck_BaselineRow *was = &baseline->rows[i];
         if (strcmp(was->scene, one->comparison->model.name) || strcmp(was->engine, one->engine->name)) continue;
-        double value = NAN, excess = 0;
+        double value = NAN, excess = 0, allowed = allowed_of(check, was);
         for (int k = 0; k < ck_metric_count(); k++)
             if (!strcmp(ck_metric_at(k)->name, was->metric)) value = row->values[value_at(k)];
         if (strcmp(was->status, status) || isnan(value) != isnan(was->value))
             excess = INFINITY;
         else if (!isnan(value))
-            excess = fabs(value - was->value) / was->band;
-        if (excess > 1) deviations[count++] = (ck_Deviation){was, value, status, excess};
+            excess = fabs(value - was->value) / allowed;
+        if (excess > 1) deviations[count++] = (ck_Deviation){was, value, status, allowed, excess};
     }
     qsort(deviations, (size_t)count, sizeof *deviations, compare_deviations);
     return count;
@@ -200,7 +213,7 @@ static void write_case(FILE *file, const ck_CheckCase *one, const ck_JournalRow 
     fprintf(file, "    <failure message=\"%d deviations from the baseline\">", count);
     for (int i = 0; i < count; i++)
         fprintf(file, "%s: %.9g, was %.9g within %.3g, status %s, was %s\n", deviations[i].row->metric,
-                deviations[i].value, deviations[i].row->value, deviations[i].row->band, deviations[i].status,
+                deviations[i].value, deviations[i].row->value, deviations[i].allowed, deviations[i].status,
                 deviations[i].row->status);
     write_escaped(file, row->reason);
     fprintf(file, "</failure>\n  </testcase>\n");
@@ -217,13 +230,13 @@ ck_Status ck_check_write_junit(const char *path, const ck_Check *check, const ck
     }
     int failed = 0;
     for (int i = 0; i < check->case_count; i++)
-        failed += ck_check_compare(&check->cases[i], &rows[i], baseline, deviations) > 0;
+        failed += ck_check_compare(check, i, &rows[i], baseline, deviations) > 0;
     fprintf(
         file,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"clothcheck\" tests=\"%d\" failures=\"%d\">\n",
         check->case_count, failed);
     for (int i = 0; i < check->case_count; i++) {
-        int count = ck_check_compare(&check->cases[i], &rows[i], baseline, deviations);
+        int count = ck_check_compare(check, i, &rows[i], baseline, deviations);
         write_case(file, &check->cases[i], &rows[i], deviations, count);
     }
     fprintf(file, "</testsuite>\n");

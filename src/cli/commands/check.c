@@ -8,10 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-// What a run in a check may take, s of CPU: the whole is to run often.
+// What a run in a check may take, s of CPU: the whole is to run often. In a baseline of their own, users decide.
 #define SECONDS 1.5
-#define BASELINE_DIRECTORY "tests/baseline"
-#define BASELINE_NAME "metrics.csv"
 #define MOST_PRINTED 20
 
 typedef struct Work {
@@ -22,6 +20,10 @@ typedef struct Work {
     ck_Check check;
     ck_JournalRow *rows;
 } Work;
+
+static double most_seconds(const Work *work) {
+    return strcmp(work->arguments.baseline, CK_BASELINE_PATH) ? INFINITY : SECONDS;
+}
 
 static bool has_row(const ck_Baseline *baseline, const char *scene, const char *engine) {
     for (int i = 0; i < baseline->count; i++)
@@ -55,6 +57,8 @@ static ck_Status list_cases(Work *work, ck_Error *error) {
     ck_Check *check = &work->check;
     check->options = options;
     check->is_update = work->arguments.is_update;
+    check->tolerances = work->arguments.tolerances;
+    check->tolerance_count = work->arguments.tolerance_count;
     check->cases = calloc((size_t)(work->comparison_count * options->engine_count) + 1, sizeof *check->cases);
     if (!check->cases) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     for (int i = 0; i < work->comparison_count; i++)
@@ -92,7 +96,7 @@ static void show_deviation(ck_Answer *answer, const ck_Deviation *deviation) {
     ck_answer_text(answer, *was->metric ? was->metric : "status");
     ck_answer_number(answer, deviation->value);
     ck_answer_number(answer, was->value);
-    ck_answer_number(answer, was->band);
+    ck_answer_number(answer, deviation->allowed);
     ck_answer_text(answer, deviation->status);
     ck_answer_text(answer, was->status);
 }
@@ -108,7 +112,7 @@ static int show_worst(Work *work, int most) {
     int count = 0;
     if (!all) return -1;
     for (int i = 0; i < work->check.case_count; i++)
-        count += ck_check_compare(&work->check.cases[i], &work->rows[i], &work->baseline, all + count);
+        count += ck_check_compare(&work->check, i, &work->rows[i], &work->baseline, all + count);
     qsort(all, (size_t)count, sizeof *all, compare_excess);
     ck_Answer *answer = &work->arguments.answer;
     ck_answer_table(answer, "deviations", NULL, columns);
@@ -133,7 +137,7 @@ static int find_case(const ck_Check *check, const ck_BaselineRow *row) {
 // that stays as it was.
 static bool add_case(const Work *work, int index, bool is_known, ck_Csv *csv) {
     const ck_CheckCase *one = &work->check.cases[index];
-    if (ck_check_add(one, &work->rows[index], is_known ? 2 * SECONDS : SECONDS, csv)) return true;
+    if (ck_check_add(one, &work->rows[index], (is_known ? 2 : 1) * most_seconds(work), csv)) return true;
     for (int i = 0; i < work->baseline.count; i++)
         if (is_of(&work->baseline.rows[i], one)) ck_baseline_add(&work->baseline.rows[i], csv);
     return false;
@@ -158,22 +162,43 @@ static void add_all(Work *work, ck_Csv *csv) {
     for (int i = 0; i < check->case_count; i++)
         if (!has_row(&work->baseline, check->cases[i].comparison->model.name, check->cases[i].engine->name))
             added += add_case(work, i, false, csv);
-    ck_answer_line(&work->arguments.answer, CK_ANSWER_SAYS,
-                   "%s/%s: %d runs; %d take more than %g s and are left out, %d more than %g s or time out and stay",
-                   BASELINE_DIRECTORY, BASELINE_NAME, added, check->case_count - added - kept, SECONDS, kept,
-                   2 * SECONDS);
+    ck_Answer *answer = &work->arguments.answer;
+    ck_answer_line(answer, CK_ANSWER_SAYS, "%s: %d runs", work->arguments.baseline, added);
+    if (check->case_count > added + kept)
+        ck_answer_line(answer, CK_ANSWER_NOTE, "%d take more than %g s and are left out",
+                       check->case_count - added - kept, most_seconds(work));
+    if (kept)
+        ck_answer_line(answer, CK_ANSWER_NOTE, "%d take more than %g s or time out, and stay as they were", kept,
+                       2 * most_seconds(work));
 }
 
 static ck_Status update(Work *work, ck_Error *error) {
     ck_Csv csv = {0};
-    int failed = ck_path_make(BASELINE_DIRECTORY);
-    ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", BASELINE_DIRECTORY, strerror(failed)) : CK_OK;
-    if (!status) status = ck_csv_open(&csv, BASELINE_DIRECTORY, &ck_layouts[CK_BASELINE], error);
+    char *path = strdup(work->arguments.baseline), *slash = path ? strrchr(path, '/') : NULL;
+    if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Layout layout = ck_layouts[CK_BASELINE];
+    layout.file = slash ? slash + 1 : path;
+    if (slash) *slash = 0;
+    ck_Status status = ck_csv_open(&csv, slash ? path : ".", &layout, error);
     if (!status && work->baseline.count) show_worst(work, 1000);
     if (!status) add_all(work, &csv);
     if (!status) status = ck_csv_close(&csv, error);
     ck_csv_discard(&csv);
+    free(path);
     return status;
+}
+
+// Rows of an engine that is not here are not checked, and that is said.
+static void note_absent(Work *work) {
+    const ck_Baseline *baseline = &work->baseline;
+    for (int i = 0; i < baseline->count; i++) {
+        const char *engine = baseline->rows[i].engine;
+        bool is_told = ck_engine_find(engine);
+        for (int k = 0; k < i && !is_told; k++) is_told = !strcmp(baseline->rows[k].engine, engine);
+        if (!is_told)
+            ck_answer_line(&work->arguments.answer, CK_ANSWER_NOTE,
+                           "%s is not here and was not checked: give --engine '%s=...'", engine, engine);
+    }
 }
 
 static ck_Status check(Work *work, int *deviations, ck_Error *error) {
@@ -181,7 +206,7 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
     int failed = ck_path_make(arguments->out);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", arguments->out, strerror(failed)) : CK_OK;
     if (!status) status = ck_arguments_all_scenes(arguments, error);
-    ck_Status found = status ? status : ck_baseline_read(&work->baseline, BASELINE_DIRECTORY, error);
+    ck_Status found = status ? status : ck_baseline_read(&work->baseline, arguments->baseline, error);
     if (!status && !arguments->is_update) status = found;
     ck_command_catch_signals();
     if (!status) status = load_scenes(work, error);
@@ -192,6 +217,7 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
     if (!status && !path) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_check_write_junit(path, &work->check, work->rows, &work->baseline, error);
     if (!status) *deviations = show_worst(work, MOST_PRINTED);
+    if (!status) note_absent(work);
     if (!status)
         ck_answer_line(&arguments->answer, CK_ANSWER_SAYS, "%d runs, %d deviations", work->check.case_count,
                        *deviations);
@@ -219,10 +245,12 @@ const ck_Command ck_command_check = {
     .name = "check",
     .arguments = "[SCENE...]",
     .about = "regression: what was measured before, within bands; exit status 1",
-    .help = "Measures what " BASELINE_DIRECTORY "/" BASELINE_NAME
-            " holds again and prints what is beyond its band, the worst first;\nwrites check.xml (JUnit). Exit "
-            "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size change at "
-            "most: what rounding may come to on another machine.",
+    .help =
+        "Measures what --baseline holds again and prints what is beyond its band, the worst first;\nwrites check.xml "
+        "(JUnit). Exit "
+        "status 1 where there is any. A band is ten times what nudges of the start by\n1e-12 of the size change at "
+        "most, 1e-6 of an engine in single precision: what rounding may come to on another machine.\nWith --baseline "
+        "and --engine 'mine=./adapter' it guards a solver in a repository of its own; --update begins it.",
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_JOBS | CK_TAKES_UPDATE,
     .out = "out",
     .seconds = 900,
