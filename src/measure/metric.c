@@ -93,6 +93,60 @@ static double energy_drift_over(const ck_Model *model, const ck_Trajectory *traj
     return ck_energy_drift(model, trajectory);
 }
 
+// True where nothing from outside acts: momentum stays.
+static bool is_isolated(const ck_Model *model) {
+    return !model->pin_count && !model->collider_count && !(model->drag > 0) && !(model->terms & CK_TERM_FORCE) &&
+           !(model->terms & CK_TERM_GRAVITY);
+}
+
+// Momentum of a frame and, about a point, its angular momentum; and the sums of their particles' lengths.
+typedef struct Momentum {
+    double linear[3], angular[3], linear_scale, angular_scale;
+} Momentum;
+
+static Momentum momentum_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const double *about) {
+    Momentum sum = {0};
+    for (int i = 0; i < model->particle_count; i++) {
+        const double *x = ck_trajectory_position(trajectory, frame) + 3 * i,
+                     *v = ck_trajectory_velocity(trajectory, frame) + 3 * i;
+        double from[3], turn[3];
+        ck_subtract(from, x, about);
+        ck_cross(turn, from, v);
+        ck_add_scaled(sum.linear, model->mass[i], v);
+        ck_add_scaled(sum.angular, model->mass[i], turn);
+        sum.linear_scale += model->mass[i] * ck_length(v);
+        sum.angular_scale += model->mass[i] * ck_length(turn);
+    }
+    return sum;
+}
+
+// The largest change of momentum, / the largest sum of its particles'.
+static double momentum_change(const ck_Model *model, const ck_Trajectory *trajectory, bool is_angular) {
+    if (!is_isolated(model)) return NAN;
+    const double *about = ck_trajectory_position(trajectory, 0);
+    const Momentum start = momentum_at(model, trajectory, 0, about);
+    double change = 0, scale = 0;
+    for (int frame = 0; frame < trajectory->frame_count; frame++) {
+        const Momentum now = momentum_at(model, trajectory, frame, about);
+        change =
+            fmax(change, is_angular ? ck_distance(now.angular, start.angular) : ck_distance(now.linear, start.linear));
+        scale = fmax(scale, is_angular ? now.angular_scale : now.linear_scale);
+    }
+    return scale > 0 ? change / scale : NAN;
+}
+
+static double momentum_drift_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                  const ck_Reference *reference) {
+    (void)reference;
+    return momentum_change(model, trajectory, false);
+}
+
+static double angular_momentum_drift_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                          const ck_Reference *reference) {
+    (void)reference;
+    return momentum_change(model, trajectory, true);
+}
+
 static double speed_rms(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
     const double *velocity = ck_trajectory_velocity(trajectory, frame);
     double sum = 0;
@@ -190,6 +244,11 @@ static const ck_Metric metrics[] = {
      .over = position_rms_over, .between = position_rms_between, .to_horizon = true},
     {"energy_drift", "1", "Energy gained, or lost beyond the scene's own damping / what it turns over", CK_TRUTH_ZERO,
      .over = energy_drift_over},
+    {"momentum_drift", "1", "Largest change of momentum, of a body that nothing acts on / its particles'",
+     CK_TRUTH_ZERO, .over = momentum_drift_over},
+    {"angular_momentum_drift", "1",
+     "Largest change of angular momentum, of a body that nothing acts on / its particles'", CK_TRUTH_ZERO,
+     .over = angular_momentum_drift_over},
     {"settle_time", "s", "Time after which the body stays still", CK_TRUTH_NONE, .over = settle_time_over},
     {"sag_path", "1", "Root mean square difference of sag(t) to the truth's, whole run", CK_TRUTH_ZERO,
      .over = sag_path_over},
