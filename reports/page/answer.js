@@ -105,7 +105,10 @@ async function showAnswer() {
 	const scene = document.getElementById("answer-scene").value;
 	const tolerance = Number(document.getElementById("answer-error").value);
 	const facts = await factsOf(scene);
-	const best = bestWays(await waysToRun(scene, facts), tolerance);
+	// who keeps the table should not need to win it
+	const isRanked = (row) => !document.getElementById("answer-others").checked || !/^(native|seed)-/.test(row.engine);
+	facts.rows = facts.rows.filter(isRanked);
+	const best = bestWays((await waysToRun(scene, facts)).filter(isRanked), tolerance);
 	const rows = [...best.within.map((way) => answerRow(way, best.within[0], true)),
 		...best.beyond.map((way) => answerRow(way, best.within[0], false)), ...otherRows(facts, best)];
 	document.getElementById("answer-text").replaceChildren(...answerText(scene, tolerance, best, facts));
@@ -125,7 +128,7 @@ async function startAnswer() {
 	const first = ["cloth_two_corners", ...studied].find((name) => names.includes(name));
 	fillSelect(select, names, first);
 	document.getElementById("answer").hidden = false;
-	for (const input of [select, document.getElementById("answer-error")])
+	for (const input of [select, document.getElementById("answer-error"), document.getElementById("answer-others")])
 		input.addEventListener("change", () => showAnswer().catch(showTrouble));
 	await showAnswer();
 }

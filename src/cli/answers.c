@@ -2,6 +2,7 @@
 #include "command.h"
 #include "csv_reader.h"
 
+#include <fnmatch.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,13 +19,19 @@ static int compare_costs(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+static bool is_ranked(const ck_Arguments *arguments, const char *engine) {
+    return !arguments->rank_without || fnmatch(arguments->rank_without, engine, 0);
+}
+
 // The engines that came to their end and are within 1 %, the cheapest first.
-static int find_candidates(const ck_Comparison *comparison, Candidate *found) {
+static int find_candidates(const ck_Arguments *arguments, const ck_Comparison *comparison, Candidate *found) {
     const ck_Metric *position = ck_metric_find("position_rms");
     int count = 0;
     for (int i = 0; i < comparison->run_count; i++) {
         const ck_Run *run = &comparison->runs[i];
-        if (run->status != CK_RUN_OK || run->engine->method == CK_METHOD_STILL || !ck_run_has_all_frames(run)) continue;
+        if (run->status != CK_RUN_OK || run->engine->method == CK_METHOD_STILL || !ck_run_has_all_frames(run) ||
+            !is_ranked(arguments, run->engine->name))
+            continue;
         double simulated = run->timing.frames * run->model->step,
                error = ck_metric_value(position, run->model, &run->trajectory, &comparison->truth.reference);
         if (error <= 0.01 && run->timing.repeat_count)
@@ -34,7 +41,8 @@ static int find_candidates(const ck_Comparison *comparison, Candidate *found) {
     return count;
 }
 
-void ck_answer_cheapest(ck_Answer *answer, const ck_Comparison *comparison) {
+void ck_answer_cheapest(ck_Arguments *arguments, const ck_Comparison *comparison) {
+    ck_Answer *answer = &arguments->answer;
     const char *name = comparison->model.name;
     Candidate found[CK_COMPARISON_MAX_ENGINES];
     if (!comparison->truth.reference.trajectory.frame_count) {
@@ -42,7 +50,7 @@ void ck_answer_cheapest(ck_Answer *answer, const ck_Comparison *comparison) {
                        "%s: no truth knows its positions; look at what the engines agree on: the page shows it", name);
         return;
     }
-    int count = find_candidates(comparison, found), timed = 0;
+    int count = find_candidates(arguments, comparison, found), timed = 0;
     for (int i = 0; i < comparison->run_count; i++) timed += comparison->runs[i].timing.repeat_count > 0;
     if (!timed) return;
     if (!count) {
@@ -94,7 +102,8 @@ static void add_truth(ck_Answer *answer, const ck_Comparison *comparison) {
         ck_answer_line(answer, CK_ANSWER_NOTE, "truth: %s", truth->kind);
 }
 
-void ck_answer_summary(ck_Answer *answer, const ck_Comparison *comparison) {
+void ck_answer_summary(ck_Arguments *arguments, const ck_Comparison *comparison) {
+    ck_Answer *answer = &arguments->answer;
     static const ck_AnswerColumn columns[] = {{"scene", "scene", -18, NULL},
                                               {"engine", "engine", -16, NULL},
                                               {"status", "status", -13, NULL},
@@ -188,14 +197,16 @@ static void add_precision(ck_Answer *answer, const ck_CsvTable *table, const ck_
 }
 
 // Who is the cheapest within 1 %, and whom finer steps make worse.
-static void say_precision(ck_Answer *answer, const ck_CsvTable *summary, const char *scene) {
+static void say_precision(ck_Arguments *arguments, const ck_CsvTable *summary, const char *scene) {
+    ck_Answer *answer = &arguments->answer;
     int best = -1;
     for (int i = 0; i < summary->row_count; i++) {
         if (strcmp(text(summary, i, "scene"), scene)) continue;
         if (!strcmp(text(summary, i, "quantity"), "finest_useful_substeps"))
             ck_answer_line(answer, CK_ANSWER_NOTE, "%s, from %s substeps on: %s", text(summary, i, "engine"),
                            text(summary, i, "value"), text(summary, i, "reason"));
-        if (!strcmp(text(summary, i, "quantity"), "cost_to_1_percent") && !isnan(number(summary, i, "value")) &&
+        if (!strcmp(text(summary, i, "quantity"), "cost_to_1_percent") &&
+            is_ranked(arguments, text(summary, i, "engine")) && !isnan(number(summary, i, "value")) &&
             (best < 0 || number(summary, i, "value") < number(summary, best, "value")))
             best = i;
     }
@@ -206,12 +217,12 @@ static void say_precision(ck_Answer *answer, const ck_CsvTable *summary, const c
                        text(summary, best, "engine"), number(summary, best, "value"));
 }
 
-ck_Status ck_answer_precision(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error) {
+ck_Status ck_answer_precision(ck_Arguments *arguments, const char *scene, ck_Error *error) {
     ck_CsvTable table = {0}, summary = {0};
-    ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_PRECISION], error);
-    if (!status) status = ck_csv_table_read(&summary, directory, &ck_layouts[CK_PRECISION_SUMMARY], error);
-    if (!status) add_precision(answer, &table, &summary, scene);
-    if (!status) say_precision(answer, &summary, scene);
+    ck_Status status = ck_csv_table_read(&table, arguments->out, &ck_layouts[CK_PRECISION], error);
+    if (!status) status = ck_csv_table_read(&summary, arguments->out, &ck_layouts[CK_PRECISION_SUMMARY], error);
+    if (!status) add_precision(&arguments->answer, &table, &summary, scene);
+    if (!status) say_precision(arguments, &summary, scene);
     ck_csv_table_free(&table);
     ck_csv_table_free(&summary);
     return status;

@@ -62,8 +62,9 @@ typedef struct ck_Arguments {
     const char *format;      // of export; NULL: json
     const char *path, *name; // of a recording; NULL: none
     double frame_cost,
-        interval;   // ms that a frame of it cost, NaN: not known; s between frames of .npy, 0: as the scene
-    bool by_engine; // results of one engine of a scene stand for themselves
+        interval;             // ms that a frame of it cost, NaN: not known; s between frames of .npy, 0: as the scene
+    const char *rank_without; // pattern of engines that no answer names; NULL: none
+    bool by_engine;           // results of one engine of a scene stand for themselves
     int shard, shards;
     bool runs_nothing;
     bool appends, forces;  // into a directory that holds other results: keeps them, replaces them
@@ -125,7 +126,7 @@ void ck_columns_print(void);
 void ck_arguments_help(const ck_Command *command);
 
 // Shows a scene while its runs are in memory.
-typedef void ck_Show(ck_Answer *answer, const ck_Comparison *comparison);
+typedef void ck_Show(ck_Arguments *arguments, const ck_Comparison *comparison);
 
 // Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each.
 // Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
@@ -138,11 +139,11 @@ int ck_command_end(ck_Arguments *arguments, ck_Status status, ck_Error *error);
 // One row an engine: status, error and cost; how well the truth is known; and why an engine failed.
 ck_Show ck_answer_summary;
 
-// Which engine is the cheapest within 1 % of the truth, and which comes next.
+// Which engine is the cheapest within 1 % of the truth, and which comes next; without those of --rank-without.
 ck_Show ck_answer_cheapest;
 
 // What a study of a scene came to, of the CSVs in a directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
-ck_Status ck_answer_precision(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error);
+ck_Status ck_answer_precision(ck_Arguments *arguments, const char *scene, ck_Error *error);
 ck_Status ck_answer_stability(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error);
 ck_Status ck_answer_needs(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error);
 ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *error);

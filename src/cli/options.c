@@ -65,6 +65,8 @@ static const Option table[] = {
      .help = "CPU seconds that a whole run may cost, or it is cut and scored as far as it came; 0: any"},
     {"full", NULL, 0, CK_TAKES_TIMING, OTHER, .read = set_full,
      .help = "all the depth: any cost, five repeats of up to 2 s, self-consistency of costly engines, too"},
+    {"rank-without", "PATTERN", 0, CK_TAKES_TIMING, TEXT, PLACE(rank_without), .is_way = true,
+     .help = "engines that the answer does not name, as 'native-*': those of the host of the table"},
     {"budget", "S", 0, CK_TAKES_TIMING, NUMBER, PLACE(options.budget), 0, 1e6, .fallback = "0.5",
      .help = "CPU seconds a timed repeat at most"},
     {"seed", "N", 0, CK_TAKES_TIMING, OTHER, .fallback = "1", .read = set_seed,
@@ -204,8 +206,12 @@ static ck_Status add_outside(ck_Arguments *arguments, const char *text, ck_Error
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - text) : 0, text);
     ck_Status status = is_library(rest) ? ck_outside_library(&engine, equals ? name : NULL, rest, error)
                                         : ck_outside_command(&engine, name, rest, error);
-    if (!status) status = ck_engines_add(engine, error);
-    if (!status) add_engine(arguments, engine);
+    if (status) return status;
+    status = ck_engines_add(engine, error);
+    if (!status)
+        add_engine(arguments, engine);
+    else
+        ck_outside_free(engine);
     return status;
 }
 

@@ -58,8 +58,8 @@ static ck_Status check_names(const ck_Comparison *comparisons, int count, ck_Err
     return CK_OK;
 }
 
-static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *arguments, ck_Tables *tables,
-                         ck_Answer *answer, ck_Show *show, ck_Error *error) {
+static ck_Status run_all(ck_Comparison *comparisons, ck_Arguments *arguments, ck_Tables *tables, ck_Show *show,
+                         ck_Error *error) {
     ck_CompareOptions options = arguments->options;
     ck_command_catch_signals();
     options.progress = show_progress;
@@ -76,7 +76,7 @@ static ck_Status run_all(ck_Comparison *comparisons, const ck_Arguments *argumen
         if (!status && arguments->out)
             status =
                 ck_replay_write(&comparisons[i], arguments->out, arguments->appends && arguments->by_engine, error);
-        if (!status) show(answer, &comparisons[i]);
+        if (!status) show(arguments, &comparisons[i]);
         ck_comparison_free_runs(&comparisons[i]);
     }
     free(cache);
@@ -95,7 +95,7 @@ ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *err
     if (!status && arguments->out)
         status = ck_tables_open(&tables, arguments->out, keeping, arguments->by_engine, comparisons, count,
                                 &arguments->options, error);
-    if (!status) status = run_all(comparisons, arguments, &tables, &arguments->answer, show, error);
+    if (!status) status = run_all(comparisons, arguments, &tables, show, error);
     if (!status && arguments->out) status = ck_tables_close(&tables, error);
     ck_tables_discard(&tables);
     for (int i = 0; i < count; i++) ck_comparison_free(&comparisons[i]);

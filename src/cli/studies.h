@@ -7,7 +7,7 @@
 #include "tables.h"
 
 typedef struct ck_StudyCommand {
-    const ck_Arguments *arguments;
+    ck_Arguments *arguments;
     ck_Answer *answer;
     const ck_Comparison *comparison; // with its truth
     char question[2400];

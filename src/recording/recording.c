@@ -99,7 +99,7 @@ static void find_finite(States *states, const ck_Model *model) {
 static void derive_velocity(States *states, const ck_Model *model) {
     size_t width = 3 * (size_t)model->particle_count;
     for (int k = 0; k < states->count; k++) {
-        int last = states->count - 1, middle = k == 0 ? 1 : k == last ? last - 1 : k;
+        int last = states->count - 1, middle = k == last && last > 1 ? last - 1 : k;
         double *out = states->velocity + width * (size_t)k;
         if (k == 0 || last < 1) {
             memcpy(out, model->velocity, width * sizeof *out);

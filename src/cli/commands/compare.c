@@ -21,10 +21,11 @@ static void show_outliers(ck_Answer *answer, const ck_Comparison *comparison) {
     }
 }
 
-static void show(ck_Answer *answer, const ck_Comparison *comparison) {
-    ck_answer_summary(answer, comparison);
+static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
+    ck_Answer *answer = &arguments->answer;
+    ck_answer_summary(arguments, comparison);
     show_outliers(answer, comparison);
-    ck_answer_cheapest(answer, comparison);
+    ck_answer_cheapest(arguments, comparison);
     ck_answer_gap(answer);
 }
 

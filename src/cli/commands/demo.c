@@ -5,9 +5,10 @@
 
 static const char *const scenes[] = {"rope_hanging", "cloth_two_corners", "cloth_on_sphere"};
 
-static void show(ck_Answer *answer, const ck_Comparison *comparison) {
-    ck_answer_summary(answer, comparison);
-    ck_answer_cheapest(answer, comparison);
+static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
+    ck_Answer *answer = &arguments->answer;
+    ck_answer_summary(arguments, comparison);
+    ck_answer_cheapest(arguments, comparison);
     ck_answer_gap(answer);
 }
 

@@ -27,9 +27,10 @@ static void show_ledger(ck_Answer *answer, const ck_Run *run) {
     }
 }
 
-static void show(ck_Answer *answer, const ck_Comparison *comparison) {
-    ck_answer_summary(answer, comparison);
-    ck_answer_cheapest(answer, comparison);
+static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
+    ck_Answer *answer = &arguments->answer;
+    ck_answer_summary(arguments, comparison);
+    ck_answer_cheapest(arguments, comparison);
     for (int i = 0; i < comparison->run_count; i++) show_ledger(answer, &comparison->runs[i]);
 }
 

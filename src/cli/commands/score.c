@@ -5,32 +5,37 @@
 #include <stdio.h>
 #include <string.h>
 
-static void show(ck_Answer *answer, const ck_Comparison *comparison) {
-    ck_answer_summary(answer, comparison);
+static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
+    ck_Answer *answer = &arguments->answer;
+    ck_answer_summary(arguments, comparison);
     for (int i = 0; i < comparison->run_count; i++)
         if (comparison->runs[i].engine->outside && comparison->runs[i].remark)
             ck_answer_line(answer, CK_ANSWER_NOTE, "%s: %s", comparison->runs[i].engine->name,
                            comparison->runs[i].remark);
-    ck_answer_cheapest(answer, comparison);
+    ck_answer_cheapest(arguments, comparison);
 }
 
 // Puts the recording before the engines that were asked for, which are none where none was.
-static ck_Status add_recording(ck_Arguments *arguments, ck_Engine **engine, ck_Error *error) {
+static ck_Status add_recording(ck_Arguments *arguments, ck_Error *error) {
+    ck_Engine *engine = NULL;
     ck_Comparison comparison;
     ck_CompareOptions *options = &arguments->options;
     ck_Status status = ck_comparison_load(&comparison, arguments->scenes[0], error);
     if (!status)
-        status = ck_outside_recording(engine, arguments->name ? arguments->name : "recorded", arguments->path,
+        status = ck_outside_recording(&engine, arguments->name ? arguments->name : "recorded", arguments->path,
                                       arguments->interval, 1e-3 * arguments->frame_cost, &comparison.model, error);
     ck_comparison_free(&comparison);
-    if (!status) status = ck_engines_add(*engine, error);
-    if (status) return status;
+    if (!status) status = ck_engines_add(engine, error);
+    if (status) {
+        ck_outside_free(engine);
+        return status;
+    }
     bool has_others = options->engines == arguments->engines;
     int others = has_others ? options->engine_count : 0;
     if (others + 1 > CK_COMPARISON_MAX_ENGINES)
         return ck_fail(error, CK_BAD_INPUT, "at most %d engines beside a recording", CK_COMPARISON_MAX_ENGINES - 1);
     memmove(arguments->engines + 1, arguments->engines, (size_t)others * sizeof *arguments->engines);
-    arguments->engines[0] = *engine;
+    arguments->engines[0] = engine;
     options->engines = arguments->engines;
     options->engine_count = others + 1;
     return CK_OK;
@@ -39,12 +44,11 @@ static ck_Status add_recording(ck_Arguments *arguments, ck_Engine **engine, ck_E
 static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     ck_Arguments arguments;
-    ck_Engine *engine = NULL;
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status && (arguments.scene_count != 1 || !arguments.path))
         status = ck_fail(&error, CK_BAD_INPUT, "score takes one SCENE and --path FILE; %d scenes%s are given",
                          arguments.scene_count, arguments.path ? "" : " and no file");
-    if (!status) status = add_recording(&arguments, &engine, &error);
+    if (!status) status = add_recording(&arguments, &error);
     arguments.by_engine = true;
     if (!arguments.out) arguments.options.consistency_budget = 0;
     if (!status) status = ck_command_study(&arguments, show, &error);

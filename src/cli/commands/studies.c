@@ -23,8 +23,7 @@ static ck_Status run_precision(const ck_StudyCommand *command, ck_Error *error) 
     if (!status) ck_precision_write(&precision, rows, &csv, &summary);
     if (!status) status = ck_csv_close(&csv, error);
     if (!status) status = ck_csv_close(&summary, error);
-    if (!status)
-        status = ck_answer_precision(command->answer, command->arguments->out, command->comparison->model.name, error);
+    if (!status) status = ck_answer_precision(command->arguments, command->comparison->model.name, error);
     if (!status) ck_study_command_done(command, &study, "precision.csv, precision_summary.csv");
     ck_csv_discard(&csv);
     ck_csv_discard(&summary);
