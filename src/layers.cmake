@@ -48,11 +48,11 @@ macro(clothcheck_vectors name)
   endforeach()
 endmacro()
 
-# A text of bridge/code as a C string, with what its lines "//: use NAME" name put in their place.
+# A text below bridge/ as a C string, with what its lines "//: use NAME" name of bridge/code put in their place.
 function(clothcheck_text name file symbol)
   set(folder ${CMAKE_SOURCE_DIR}/bridge/code)
-  file(READ ${folder}/${file} text)
-  set(files ${folder}/${file})
+  file(READ ${CMAKE_SOURCE_DIR}/bridge/${file} text)
+  set(files ${CMAKE_SOURCE_DIR}/bridge/${file})
   while(text MATCHES "//: use ([a-z_]+)\n")
     file(READ ${folder}/${CMAKE_MATCH_1}.inc part)
     string(REPLACE "${CMAKE_MATCH_0}" "${part}" text "${text}")

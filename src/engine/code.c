@@ -198,13 +198,17 @@ static void fill(FILE *out, const ck_Code *code, const ck_Model *model) {
         } else if (!strncmp(line, "//: end", 7) && depth) {
             depth--;
         } else if (!strncmp(line, "//: data", 8)) {
-            write_tables(out, code, model);
+            if (model) write_tables(out, code, model);
         } else if (is_in[depth]) {
             write_line(out, code, line, length);
             fputc('\n', out);
         }
         line += length + (line[length] == '\n');
     }
+}
+
+void ck_code_fill(FILE *out, const ck_Code *code) {
+    fill(out, code, NULL);
 }
 
 ck_Status ck_code_write(FILE *out, const ck_Engine *engine, const ck_Model *model, const ck_Settings *used,

@@ -34,6 +34,9 @@ void ck_code_text(ck_Code *code, const char *name, const char *text);
 // A part that is in the program, or not.
 void ck_code_part(ck_Code *code, const char *name, bool is_in);
 
+// Writes a text with its gaps filled; of //: data nothing.
+void ck_code_fill(FILE *out, const ck_Code *code);
+
 struct ck_Engine;
 
 // Writes the program of an engine on a scene's model with settings that the engine has used.

@@ -22,6 +22,10 @@ ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *l
 // ck_outside_free.
 ck_Status ck_outside_library(ck_Engine **engine, const char *name, const char *path, ck_Error *error);
 
+// Writes a directory of that name, to begin an engine with. Errors: CK_BAD_INPUT where the name will not do or is
+// taken; CK_IO, CK_NO_MEMORY.
+ck_Status ck_outside_new_engine(const char *name, ck_Error *error);
+
 // Accepts NULL.
 void ck_outside_free(ck_Engine *engine);
 

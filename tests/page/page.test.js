@@ -38,6 +38,7 @@ function makeReport() {
 	const changed = runs.replace(/^(bounce,bullet-pbd,)ok,[^,]*,/m, `$1aborted,"${aborted}",`);
 	assert.notEqual(changed, runs);
 	writeFileSync(join(directory, "runs.csv"), changed);
+	run("conform", "order", "mirror", "threads", "--engine", "native-verlet", "--engine", "bullet-pbd", "--out", directory);
 	run("report", directory);
 }
 
@@ -86,6 +87,29 @@ test("the first screen answers which solver, and at what cost", async () => {
 	const cost = await page.locator("#answer-table tbody tr").first().locator("td").nth(3).getAttribute("data-value");
 	assert.equal(Number(cost), Number(best.cpu_ms_per_s));
 	await screenshot("first");
+});
+
+test("without the engines of whoever made the table, another one answers", async () => {
+	const names = () => page.locator("#answer-table tbody .engine").allTextContents();
+	assert.ok((await names()).some((name) => name.includes("native-")));
+	await page.check("#answer-others");
+	await page.waitForFunction(() => !document.querySelector("#answer-table").textContent.includes("native-"));
+	assert.ok((await names()).some((name) => name.includes("bullet-pbd")));
+	assert.doesNotMatch(await page.locator("#answer-text").textContent(), /native-|seed-/);
+	await page.uncheck("#answer-others");
+	await page.waitForFunction(() => document.querySelector("#answer-table").textContent.includes("native-"));
+});
+
+test("conformance cards stand side by side, verdict and value", async () => {
+	const rows = csvRows("conform.csv");
+	assert.equal(rows.length, 6);
+	for (const { engine, property, verdict } of rows) {
+		const column = await page.locator("#conform-table thead th").allTextContents();
+		const index = column.findIndex((text) => text.includes(engine));
+		const cell = page.locator(`#conform-table tr:has(th:text-is("${property}")) > :nth-child(${index + 1})`);
+		assert.ok((await cell.textContent()).startsWith({ pass: "✓", fail: "✗", none: "–" }[verdict]), property);
+		assert.ok((await cell.getAttribute("title")).startsWith(verdict));
+	}
 });
 
 test("a stricter error excludes engines", async () => {

@@ -277,6 +277,38 @@ static void test_keeping(void **state) {
     fixture_assert_output("kept/runs.csv:1: column 1 is 'x' where it must be scene; --force replaces");
 }
 
+static int compare_into(const char *directory, const char *sets) {
+    char line[400];
+    snprintf(line, sizeof line, "compare oscillator -e native-verlet %s -r 2 --force --out %s/%s", sets,
+             fixture_directory, directory);
+    return fixture_program(line);
+}
+
+static int diff(const char *old, const char *new, const char *options) {
+    char line[600];
+    snprintf(line, sizeof line, "diff %s/%s %s/%s %s", fixture_directory, old, fixture_directory, new, options);
+    return fixture_program(line);
+}
+
+// The same results have not moved; those of another step have, and are told as a table that a pull request shows.
+static void test_diff(void **state) {
+    (void)state;
+    assert_int_equal(compare_into("one", ""), 0);
+    assert_int_equal(compare_into("same", ""), 0);
+    assert_int_equal(compare_into("other", "--set native-verlet.substeps=1"), 0);
+    assert_int_equal(compare_into("two", "-e still"), 0);
+    assert_int_equal(diff("one", "same", ""), 0);
+    fixture_assert_output("0 values moved, 0 runs ended otherwise");
+    assert_int_equal(diff("one", "other", "--markdown"), 1);
+    fixture_assert_output("| scene | engine | metric | was | is | error was | error is | known to |");
+    fixture_assert_output("| oscillator | native-verlet | position_rms |");
+    assert_int_equal(diff("one", "two", ""), 0);
+    fixture_assert_output("0 runs are in");
+    assert_int_equal(diff("one", "none", ""), 1);
+    assert_int_equal(fixture_program("diff one"), 2);
+    fixture_assert_output("diff takes OLD and NEW");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_usage),
@@ -290,6 +322,7 @@ int main(void) {
         cmocka_unit_test(test_update_keeps),
         cmocka_unit_test(test_no_baseline),
         cmocka_unit_test(test_keeping),
+        cmocka_unit_test(test_diff),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

@@ -1,0 +1,164 @@
+// What moved between two results.
+#include "command.h"
+#include "csv_reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Values are told apart where they differ by more than the truths' uncertainties, and by more than rounding.
+#define ROUNDING 1e-9
+
+typedef struct Result {
+    const char *directory;
+    ck_CsvTable runs, metrics;
+} Result;
+
+typedef struct Diff {
+    Result old, new;
+    ck_Answer *answer;
+    int moved, changed, faster, slower, only_old, only_new;
+} Diff;
+
+static const char *text(const ck_CsvTable *table, int row, const char *column) {
+    return ck_csv_table_text(table, row, ck_layout_column(table->layout, column));
+}
+
+static double number(const ck_CsvTable *table, int row, const char *column) {
+    return ck_csv_table_number(table, row, ck_layout_column(table->layout, column));
+}
+
+// The row of other that has the same in some columns; negative: none.
+static int find_row(const ck_CsvTable *other, const ck_CsvTable *table, int row, const char *const *columns) {
+    for (int i = 0; i < other->row_count; i++) {
+        bool is_same = true;
+        for (const char *const *column = columns; *column && is_same; column++)
+            is_same = !strcmp(text(table, row, *column), text(other, i, *column));
+        if (is_same) return i;
+    }
+    return -1;
+}
+
+static const char *const run_key[] = {"scene", "engine", NULL};
+static const char *const metric_key[] = {"scene", "engine", "metric", NULL};
+
+static ck_Status read_result(Result *result, const char *directory, ck_Error *error) {
+    result->directory = directory;
+    ck_Status status = ck_csv_table_read(&result->runs, directory, &ck_layouts[CK_RUNS], error);
+    if (!status) status = ck_csv_table_read(&result->metrics, directory, &ck_layouts[CK_METRICS], error);
+    return status;
+}
+
+static void show_statuses(Diff *diff) {
+    const ck_CsvTable *old = &diff->old.runs, *new = &diff->new.runs;
+    for (int i = 0; i < new->row_count; i++) {
+        int before = find_row(old, new, i, run_key);
+        const char *was = before < 0 ? "" : text(old, before, "status"), *is = text(new, i, "status");
+        diff->only_new += before < 0;
+        if (before < 0 || !strcmp(was, is)) continue;
+        diff->changed++;
+        ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%s %s: %s, was %s: %.140s", text(new, i, "scene"),
+                       text(new, i, "engine"), is, was, text(new, i, "reason"));
+    }
+    for (int i = 0; i < old->row_count; i++) diff->only_old += find_row(new, old, i, run_key) < 0;
+}
+
+static bool has_moved(double was, double is, double uncertainty) {
+    if (isnan(was) || isnan(is)) return isnan(was) != isnan(is);
+    return fabs(is - was) > fmax(uncertainty, ROUNDING * fmax(fabs(was), fabs(is)));
+}
+
+static void show_metrics(Diff *diff) {
+    static const ck_AnswerColumn columns[] = {{"scene", "scene", -20, NULL},
+                                              {"engine", "engine", -16, NULL},
+                                              {"metric", "metric", -16, NULL},
+                                              {"was", "was", 14, "%.9g"},
+                                              {"is", "is", 14, "%.9g"},
+                                              {"error_was", "error was", 10, "%.2g"},
+                                              {"error_is", "error is", 10, "%.2g"},
+                                              {"uncertainty", "known to", 9, "%.1g"},
+                                              {NULL, NULL, 0, NULL}};
+    const ck_CsvTable *old = &diff->old.metrics, *new = &diff->new.metrics;
+    for (int i = 0; i < new->row_count; i++) {
+        int before = find_row(old, new, i, metric_key);
+        if (before < 0) continue;
+        double was = number(old, before, "value"), is = number(new, i, "value");
+        double uncertainty = fmax(number(old, before, "truth_uncertainty"), number(new, i, "truth_uncertainty"));
+        if (!has_moved(was, is, isnan(uncertainty) ? 0 : uncertainty)) continue;
+        if (!diff->moved++) ck_answer_table(diff->answer, "moved", "Values that moved:", columns);
+        ck_answer_text(diff->answer, text(new, i, "scene"));
+        ck_answer_text(diff->answer, text(new, i, "engine"));
+        ck_answer_text(diff->answer, text(new, i, "metric"));
+        const double numbers[] = {was, is, number(old, before, "error"), number(new, i, "error"), uncertainty};
+        for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) ck_answer_number(diff->answer, numbers[k]);
+    }
+}
+
+// Costs differ where their intervals have nothing in common.
+static void show_costs(Diff *diff) {
+    static const ck_AnswerColumn columns[] = {
+        {"scene", "scene", -20, NULL},     {"engine", "engine", -16, NULL}, {"cpu_was_s", "CPU was, s", 12, "%.4g"},
+        {"cpu_is_s", "is, s", 12, "%.4g"}, {"ratio", "ratio", 8, "%.3f"},   {NULL, NULL, 0, NULL}};
+    const ck_CsvTable *old = &diff->old.runs, *new = &diff->new.runs;
+    for (int i = 0; i < new->row_count; i++) {
+        int before = find_row(old, new, i, run_key);
+        if (before < 0 || number(old, before, "simulated_s") != number(new, i, "simulated_s")) continue;
+        bool is_faster = number(new, i, "cpu_high_s") < number(old, before, "cpu_low_s");
+        bool is_slower = number(new, i, "cpu_low_s") > number(old, before, "cpu_high_s");
+        if (!is_faster && !is_slower) continue;
+        if (!(diff->faster + diff->slower))
+            ck_answer_table(diff->answer, "costs", "Costs whose intervals do not meet:", columns);
+        diff->faster += is_faster;
+        diff->slower += is_slower;
+        double was = number(old, before, "cpu_median_s"), is = number(new, i, "cpu_median_s");
+        ck_answer_text(diff->answer, text(new, i, "scene"));
+        ck_answer_text(diff->answer, text(new, i, "engine"));
+        ck_answer_number(diff->answer, was);
+        ck_answer_number(diff->answer, is);
+        ck_answer_number(diff->answer, is / was);
+    }
+}
+
+static void show(Diff *diff) {
+    show_metrics(diff);
+    show_costs(diff);
+    show_statuses(diff);
+    if (diff->only_old || diff->only_new)
+        ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%d runs are in %s alone, %d in %s", diff->only_old,
+                       diff->old.directory, diff->only_new, diff->new.directory);
+    ck_answer_line(diff->answer, CK_ANSWER_SAYS,
+                   "%d values moved, %d runs ended otherwise; %d runs are faster, %d slower", diff->moved,
+                   diff->changed, diff->faster, diff->slower);
+}
+
+static int run(const ck_Command *command, int argc, char **argv) {
+    ck_Error error = {0};
+    ck_Arguments arguments;
+    ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    Diff diff = {.answer = &arguments.answer};
+    if (!status && arguments.word_count != 2)
+        status = ck_fail(&error, CK_BAD_INPUT, "diff takes OLD and NEW, two directories of results; %d are given",
+                         arguments.word_count);
+    if (!status) status = read_result(&diff.old, arguments.words[0], &error);
+    if (!status) status = read_result(&diff.new, arguments.words[1], &error);
+    if (!status) show(&diff);
+    Result *const results[] = {&diff.old, &diff.new};
+    for (int i = 0; i < 2; i++) {
+        ck_csv_table_free(&results[i]->runs);
+        ck_csv_table_free(&results[i]->metrics);
+    }
+    int ended = ck_command_end(&arguments, status, &error);
+    return !ended && diff.moved + diff.changed ? CK_EXIT_FAILED : ended;
+}
+
+const ck_Command ck_command_diff = {
+    .name = "diff",
+    .arguments = "OLD NEW",
+    .about = "what moved between two results, fit for a pull request with --markdown",
+    .help = "Compares two directories that compare wrote. A value has moved where it differs by more than the truth's "
+            "uncertainty\nand by more than 1e-9 of it; a cost where the intervals of the medians do not meet. Exit "
+            "status 1 "
+            "where a value moved\nor a run ended otherwise.",
+    .groups = CK_TAKES_FORM,
+    .run = run,
+};
