@@ -84,6 +84,7 @@ typedef struct ck_Arguments {
     int validate_count;
     bool is_update;
     const char *baseline; // of check
+    const char *history;  // directory; NULL: none
     ck_Tolerance tolerances[16];
     int tolerance_count;
     ck_Answer answer; // begun

@@ -110,6 +110,8 @@ static const Option table[] = {
     {"format", "FORMAT", 0, CK_TAKES_FORMAT, TEXT, PLACE(format), .fallback = "json", .help = "json, csv or obj"},
     {"baseline", "FILE", 0, CK_TAKES_UPDATE, TEXT, PLACE(baseline), .fallback = CK_BASELINE_PATH,
      .help = "what was measured before"},
+    {"history", "DIR", 0, CK_TAKES_UPDATE, TEXT, PLACE(history), .is_way = true,
+     .help = "add what is measured to DIR/history.csv, which 'clothcheck report DIR' draws over time"},
     {"tolerance", "X%|METRIC=X", 0, CK_TAKES_UPDATE, OTHER, .read = add_tolerance,
      .help = "how far results may move besides their bands: a share of every metric, as 1%, or of one in its unit, as "
              "stretch_max=0.01; may be given several times"},

@@ -36,6 +36,7 @@ typedef enum ck_LayoutName {
     CK_QUIRKS,
     CK_FIT,
     CK_CONFORM,
+    CK_HISTORY,
     CK_REPORT_LAYOUTS, // those above are in a report
     CK_BASELINE = CK_REPORT_LAYOUTS,
     CK_LAYOUT_COUNT

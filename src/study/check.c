@@ -1,6 +1,7 @@
 #include "check.h"
 
 #include "csv_reader.h"
+#include "files.h"
 #include "statistics.h"
 
 #include <errno.h>
@@ -8,6 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #define NUDGE 1e-12
 // A float has 24 bits, and a coordinate may be as large as the size: some ten units in its last place.
@@ -189,6 +192,38 @@ bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seco
         ck_baseline_add(&made, csv);
     }
     return true;
+}
+
+static void add_history(ck_Csv *csv, const ck_CheckCase *one, const ck_JournalRow *row, const char *date) {
+    for (int i = 0; i < ck_metric_count(); i++) {
+        if (isnan(row->values[value_at(i)])) continue;
+        ck_csv_text(csv, date);
+        ck_csv_text(csv, ck_engine_version(one->engine));
+        ck_csv_text(csv, one->comparison->model.name);
+        ck_csv_text(csv, one->engine->name);
+        ck_csv_text(csv, ck_metric_at(i)->name);
+        ck_csv_number(csv, row->values[value_at(i)]);
+    }
+}
+
+ck_Status ck_check_remember(const char *directory, const ck_Check *check, const ck_JournalRow *rows, ck_Error *error) {
+    const ck_Layout *layout = &ck_layouts[CK_HISTORY];
+    ck_CsvTable table = {0};
+    ck_Csv csv = {0};
+    char date[40], *path = ck_path_join(directory, layout->file);
+    time_t now = time(NULL);
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+    if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Status status = access(path, F_OK) ? CK_OK : ck_csv_table_read_file(&table, path, layout, error);
+    if (!status) status = ck_csv_open(&csv, directory, layout, error);
+    for (int row = 0; row < table.row_count && !status; row++)
+        for (int i = 0; i < table.column_count; i++) ck_csv_text(&csv, ck_csv_table_text(&table, row, i));
+    for (int i = 0; i < check->case_count && !status; i++) add_history(&csv, &check->cases[i], &rows[i], date);
+    if (!status) status = ck_csv_close(&csv, error);
+    ck_csv_discard(&csv);
+    ck_csv_table_free(&table);
+    free(path);
+    return status;
 }
 
 // Text between XML tags and in attributes.

@@ -72,6 +72,10 @@ int ck_check_compare(const ck_Check *check, int one, const ck_JournalRow *row, c
 // Adds a case's rows to a new baseline. A run that takes longer than a check should, seconds of CPU, is left out.
 bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seconds, ck_Csv *csv);
 
+// Adds what was measured now to the history of a directory, history.csv, and keeps what it holds. Errors: CK_BAD_INPUT,
+// CK_IO, CK_NO_MEMORY.
+ck_Status ck_check_remember(const char *directory, const ck_Check *check, const ck_JournalRow *rows, ck_Error *error);
+
 // Writes all cases and their deviations as JUnit XML. Errors: CK_IO.
 ck_Status ck_check_write_junit(const char *path, const ck_Check *check, const ck_JournalRow *rows,
                                const ck_Baseline *baseline, ck_Error *error);

@@ -39,6 +39,13 @@ function makeReport() {
 	assert.notEqual(changed, runs);
 	writeFileSync(join(directory, "runs.csv"), changed);
 	run("conform", "order", "mirror", "threads", "--engine", "native-verlet", "--engine", "bullet-pbd", "--out", directory);
+	// of three checks, the second one of another step
+	const scene = join(directory, "swing.yaml"), steps = (number) => ["--set", `native-verlet.substeps=${number}`];
+	writeFileSync(scene, "name: swing\nrope: {particles: 2, spacing: 1, mass: 1}\nsprings: {stiffness: 50}\npins: [first]\n" +
+		"gravity: [0, -9.81, 0]\ntime: {duration: 1, fps: 60}\n");
+	const check = (...words) => execFileSync(CLOTHCHECK, ["check", scene, "-e", "native-verlet", "--baseline",
+		join(directory, "swing.csv"), "--history", directory, "--out", join(directory, "check"), ...words], { cwd: SOURCES });
+	for (const number of [2, 3, 2]) check("--update", ...steps(number));
 	run("report", directory);
 }
 
@@ -110,6 +117,14 @@ test("conformance cards stand side by side, verdict and value", async () => {
 		assert.ok((await cell.textContent()).startsWith({ pass: "✓", fail: "✗", none: "–" }[verdict]), property);
 		assert.ok((await cell.getAttribute("title")).startsWith(verdict));
 	}
+});
+
+test("what moved from version to version is drawn", async () => {
+	const rows = csvRows("history.csv").filter((row) => row.metric === "stretch_max");
+	assert.equal(rows.length, 3);
+	const row = page.locator('#history-table tr:has(td:text-is("stretch_max"))');
+	assert.equal((await row.locator("polyline").getAttribute("points")).split(" ").length, 3);
+	for (const { value } of rows) assert.ok((await row.locator("td").nth(2).getAttribute("title")).includes(value));
 });
 
 test("a stricter error excludes engines", async () => {

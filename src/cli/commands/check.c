@@ -212,6 +212,9 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
     if (!status) status = load_scenes(work, error);
     if (!status) status = list_cases(work, error);
     if (!status) status = run_cases(work, error);
+    if (!status && arguments->history) status = ck_check_remember(arguments->history, &work->check, work->rows, error);
+    if (!status && arguments->history)
+        ck_answer_line(&arguments->answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments->history);
     if (!status && arguments->is_update) return update(work, error);
     char *path = status ? NULL : ck_path_join(arguments->out, "check.xml");
     if (!status && !path) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
