@@ -13,7 +13,6 @@
 typedef struct ck_Limits {
     double seconds;      // of wall time
     size_t memory_bytes; // of resident memory; 0: none
-    bool foresees;       // a run whose frames so far say that it will take half as long again ends at once
     double patience;     // s of CPU time that a whole run may cost; 0: any
     bool spawns;         // the child starts programs: what is left of them is ended with it
 } ck_Limits;

@@ -210,10 +210,10 @@ static void say_precision(ck_Arguments *arguments, const ck_CsvTable *summary, c
             (best < 0 || number(summary, i, "value") < number(summary, best, "value")))
             best = i;
     }
-    ck_answer_line(
-        answer, CK_ANSWER_NOTE,
-        "every engine was given the same: an eighth to sixteen times the substeps of its own rule, and %g s a run",
-        arguments->options.limits.seconds);
+    ck_answer_line(answer, CK_ANSWER_NOTE,
+                   "every engine was given the same: an eighth to sixteen times the substeps of its own rule, and %g s "
+                   "of CPU a run",
+                   arguments->options.limits.patience);
     if (best < 0)
         ck_answer_line(answer, CK_ANSWER_SAYS, "%s: no engine comes within 1 %% at any setting tried", scene);
     else

@@ -35,12 +35,12 @@ typedef enum ck_ArgumentGroup {
 typedef struct ck_Command ck_Command;
 struct ck_Command {
     const char *name, *arguments, *about;
-    const char *help;    // what it does, in some lines
-    unsigned groups;     // of options
-    const char *out;     // where it writes to, where --out does not say; NULL: nowhere
-    double seconds;      // of wall time that a run may take, where --time-limit does not say
-    double full_seconds; // the same with --full; 0: as without
-    double patience;     // s of CPU time that a run may cost, where --patience does not say; 0: any
+    const char *help;     // what it does, in some lines
+    unsigned groups;      // of options
+    const char *out;      // where it writes to, where --out does not say; NULL: nowhere
+    double seconds;       // of wall time that a run may take, where --time-limit does not say
+    double patience;      // s of CPU time that a run may cost, where --patience does not say; 0: any
+    double full_patience; // the same with --full
     // argv[0] is the command's name. Returns the exit status.
     int (*run)(const ck_Command *command, int argc, char **argv);
 };

@@ -278,8 +278,7 @@ static ck_Status set_full(ck_Arguments *arguments, const char *text, ck_Error *e
     options->repeats = 5;
     options->budget = 2;
     options->consistency_budget = 10;
-    options->limits.patience = 0;
-    if (arguments->command->full_seconds > 0) options->limits.seconds = arguments->command->full_seconds;
+    options->limits.patience = arguments->command->full_patience;
     return CK_OK;
 }
 

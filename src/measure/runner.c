@@ -17,7 +17,6 @@ typedef struct Report {
     ck_Ledger ledger;
     int frame_count; // complete frames, the start among them
     double cpu, worst_step;
-    double foreseen;    // s that the run would have taken; 0: it was not given up
     bool is_cut;        // by the caller's patience
     const char *remark; // a literal of the engine's, or NULL
 } Report;
@@ -36,15 +35,6 @@ static void *create(const Job *job) {
     report->status = ck_engine_create(job->run->engine, &state, job->run->model, &job->run->wanted, &report->used,
                                       &report->ledger, &report->error);
     return state;
-}
-
-// After a twentieth of the time, and one frame at least, the rest can be foreseen.
-static bool is_hopeless(const Job *job) {
-    Report *report = job->report;
-    if (!job->limits->foresees || report->cpu < job->limits->seconds / 20) return false;
-    double foreseen = report->cpu / (report->frame_count - 1) * job->frames;
-    if (foreseen > 1.5 * job->limits->seconds) report->foreseen = foreseen;
-    return report->foreseen > 0;
 }
 
 // What the whole run would cost, s of CPU time.
@@ -91,7 +81,6 @@ static void measure(void *context) {
         if (!is_finite(job->run, report->frame_count)) report->step = CK_STEP_DIVERGED;
         if (report->step) break;
         report->frame_count++;
-        if (is_hopeless(job)) break;
         if (is_too_slow(job)) report->is_cut = true;
         if (report->is_cut) break;
     }
@@ -161,10 +150,6 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
         tell_too_slow(run, report, limits);
     } else if (child->end != CK_CHILD_DONE) {
         snprintf(run->reason, sizeof run->reason, "%s, at t = %g s", child->reason, time);
-    } else if (report->foreseen > 0) {
-        run->status = CK_RUN_TIMED_OUT;
-        snprintf(run->reason, sizeof run->reason, "given up at t = %g s: it would take %.3g s, and the limit is %g s",
-                 time, report->foreseen, limits->seconds);
     } else if (report->status) {
         run->status = report->status == CK_NO_MEMORY ? CK_RUN_OUT_OF_MEMORY : CK_RUN_REFUSED;
         snprintf(run->reason, sizeof run->reason, "%s", report->error.message);

@@ -67,8 +67,6 @@ static void add_engine(ck_Precision *precision, const ck_Engine *engine, const c
 ck_Status ck_precision_create(ck_Precision *precision, const ck_Comparison *comparison,
                               const ck_CompareOptions *options, ck_Error *error) {
     *precision = (ck_Precision){.comparison = comparison, .limits = options->limits, .repeats = options->repeats};
-    // the finest steps of a slow engine never end: most of the study's time went into waiting for that
-    precision->limits.foresees = true;
     const ck_Reference *reference = &comparison->truth.reference;
     if (!reference->trajectory.frame_count || reference->is_invariant)
         return ck_fail(error, CK_BAD_INPUT,

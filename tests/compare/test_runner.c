@@ -166,34 +166,6 @@ static void test_hostile_engines(void **state) {
     ck_comparison_free(&comparison);
 }
 
-// A run of 1000 frames of 20 ms within 1 s is given up as soon as its frames say so, and one that will be done is not.
-static void test_foreseen(void **state) {
-    (void)state;
-    static const ck_Engine slow = ENGINE("slow", create, step_slowly);
-    static const char long_scene[] =
-        "name: long\nrope: {particles: 3, spacing: 0.1, mass: 1}\ntime: {duration: 100, step: 0.1}\n";
-    static const struct {
-        double seconds;
-        ck_RunStatus status;
-        int frames;
-        const char *reason;
-    } cases[] = {{1, CK_RUN_TIMED_OUT, 4, "given up at t = 0.3 s: it would take 20"},
-                 {60, CK_RUN_OK, 1001, "ran to t"}};
-    ck_Comparison comparison;
-    fixture_load_comparison(&comparison, long_scene);
-    for (int i = 0; i < 2; i++) {
-        const ck_Limits limits = {.seconds = cases[i].seconds, .foresees = true};
-        const ck_Engine *engine = i ? &engines[7] : &slow;
-        ck_Run run;
-        assert_int_equal(ck_run_measure(&run, &comparison.model, engine, &(ck_Settings){0}, &limits, NULL), CK_OK);
-        assert_int_equal(run.status, cases[i].status);
-        assert_int_equal(run.trajectory.frame_count, cases[i].frames);
-        assert_non_null(strstr(run.reason, cases[i].reason));
-        ck_run_free(&run);
-    }
-    ck_comparison_free(&comparison);
-}
-
 // Of 20 s in frames of 20 ms a patience of 1 s sees a fifth of itself, and cuts the run; it keeps its frames, its cost
 // and the way to more. A single frame that outlasts the patience ends, too.
 static void test_patience(void **state) {
@@ -377,9 +349,9 @@ static void test_quantiles(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hostile_engines), cmocka_unit_test(test_patience), cmocka_unit_test(test_cut_scores),
-        cmocka_unit_test(test_timing),          cmocka_unit_test(test_parallel), cmocka_unit_test(test_foreseen),
-        cmocka_unit_test(test_threads_count),   cmocka_unit_test(test_verdict),  cmocka_unit_test(test_quantiles)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_hostile_engines), cmocka_unit_test(test_patience),
+                                       cmocka_unit_test(test_cut_scores),      cmocka_unit_test(test_timing),
+                                       cmocka_unit_test(test_parallel),        cmocka_unit_test(test_threads_count),
+                                       cmocka_unit_test(test_verdict),         cmocka_unit_test(test_quantiles)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

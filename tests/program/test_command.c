@@ -35,7 +35,7 @@ static void test_usage(void **state) {
         {"help tune", 0, "clothcheck tune SCENE [options]"},
         {"help fly", 2, "there is no command fly"},
         {"run -h", 0, "--engine NAME"},
-        {"precision --help", 0, "one run may take (default: 3)"},
+        {"precision --help", 0, "cut and scored as far as it came; 0: any (default: 3)"},
         {"run", 2, "run takes one SCENE; none is given"},
         {"run --help", 0, "--engine NAME"},
         {"compare --help", 0, "--time-limit S"},

@@ -43,11 +43,12 @@ const ck_Command ck_command_precision = {
     .help = "Runs every engine over time steps from an eighth to sixteen times as many substeps as its rule takes, and "
             "over\niterations; writes precision.csv with error, cost and the Pareto front, and precision_summary.csv "
             "with orders,\nfloors and the cost to reach 10, 1 and 0.1 %.",
-    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_TIMING | CK_TAKES_JOBS |
-              CK_TAKES_SHARD,
+    .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_TIMING | CK_TAKES_PATIENCE |
+              CK_TAKES_JOBS | CK_TAKES_SHARD,
     .out = "out",
-    .seconds = 3,
-    .full_seconds = 20,
+    .seconds = 900,
+    .patience = 3,
+    .full_patience = 20,
     .run = precision,
 };
 
