@@ -84,11 +84,20 @@ function answerText(scene, tolerance, { within, beyond }, facts) {
 	return text;
 }
 
-function answerRow(way, best, isWithin) {
+// The command that prints a program with these settings, where there is one.
+function codeCommand(scene, way) {
+	if (!looks.get(way.engine)?.hasCode) return "";
+	const sets = [`--set ${way.engine}.substeps=${way.substeps}`];
+	if (way.iterations > 0) sets.push(`--set ${way.engine}.iterations=${way.iterations}`);
+	return `clothcheck code ${scene} --engine ${way.engine} ${sets.join(" ")}`;
+}
+
+function answerRow(scene, way, best, isWithin) {
 	const yaml = `${way.engine}: {substeps: ${way.substeps}${way.iterations > 0 ? `, iterations: ${way.iterations}` : ""}}`;
 	return {
 		engine: way.engine, within: isWithin ? "yes" : "no", error: String(way.error), "ms CPU per s": String(way.cost),
 		"times the cheapest": best ? String(way.cost / best.cost) : "", settings: yaml, "measured in": way.source,
+		command: codeCommand(scene, way),
 	};
 }
 
@@ -98,6 +107,7 @@ function otherRows(facts, best) {
 	return facts.rows.filter((row) => !shown.has(row.engine)).map((row) => ({
 		engine: row.engine, within: row.status !== "ok" ? row.status : row.error === "nan" ? "no truth" : "no better than still",
 		error: row.error === "nan" ? "" : row.error, "ms CPU per s": "", "times the cheapest": "", settings: "", "measured in": "runs.csv",
+		command: "",
 	}));
 }
 
@@ -109,12 +119,12 @@ async function showAnswer() {
 	const isRanked = (row) => !document.getElementById("answer-others").checked || !/^(native|seed)-/.test(row.engine);
 	facts.rows = facts.rows.filter(isRanked);
 	const best = bestWays((await waysToRun(scene, facts)).filter(isRanked), tolerance);
-	const rows = [...best.within.map((way) => answerRow(way, best.within[0], true)),
-		...best.beyond.map((way) => answerRow(way, best.within[0], false)), ...otherRows(facts, best)];
+	const rows = [...best.within.map((way) => answerRow(scene, way, best.within[0], true)),
+		...best.beyond.map((way) => answerRow(scene, way, best.within[0], false)), ...otherRows(facts, best)];
 	document.getElementById("answer-text").replaceChildren(...answerText(scene, tolerance, best, facts));
 	document.getElementById("answer-table").replaceChildren(csvTable(
-		["engine", "within", "error", "ms CPU per s", "times the cheapest", "settings", "measured in"], rows,
-		"Each engine's cheapest settings from which on finer steps stay within that error, of those that were measured; for the others, the nearest they came"));
+		["engine", "within", "error", "ms CPU per s", "times the cheapest", "settings", "measured in", "command"], rows,
+		"Each engine's cheapest settings from which on finer steps stay within that error, of those that were measured; for the others, the nearest they came. The command prints a program with these settings"));
 }
 
 async function startAnswer() {

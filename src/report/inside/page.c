@@ -1,6 +1,7 @@
 #include "page.h"
 
 #include "chart.h"
+#include "engines.h"
 #include "files.h"
 #include "process.h"
 #include "replay_pack.h"
@@ -101,8 +102,9 @@ static void write_engines(const Page *page) {
     fprintf(page->file, "\"engines\":[");
     for (int i = 0; i < page->data->engine_count; i++) {
         ck_Look look = ck_chart_look(i);
-        fprintf(page->file, "%s{\"name\":\"%s\",\"color\":\"%s\",\"sign\":\"%s\"}", i ? "," : "",
-                page->data->engines[i], look.color, look.sign);
+        const ck_Engine *engine = ck_engine_find(page->data->engines[i]);
+        fprintf(page->file, "%s{\"name\":\"%s\",\"color\":\"%s\",\"sign\":\"%s\",\"hasCode\":%s}", i ? "," : "",
+                page->data->engines[i], look.color, look.sign, engine && engine->code ? "true" : "false");
     }
     fprintf(page->file, "]");
 }
