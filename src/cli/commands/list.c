@@ -30,6 +30,8 @@ static void list_quirks(const char *engine, const char *const *names, int count)
 
 static void list_all(void) {
     printf("Engines ('clothcheck list ENGINE' tells its settings):\n");
+    if (!ck_engine_find("mujoco"))
+        printf("  %-16s not here: this program was built without MuJoCo (Debian's libmujoco-dev)\n", "mujoco");
     for (int i = 0; i < ck_engine_count(); i++)
         printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
                ck_engine_version(ck_engine_at(i)));

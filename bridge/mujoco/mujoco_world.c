@@ -1,0 +1,273 @@
+// MuJoCo: a particle is a body with three slide joints, a spring a spatial tendon, a pin a site of the world.
+#include "engine.h"
+#include "mujoco_xml.h"
+#include "scaled_model.h"
+#include "time_scale.h"
+#include "vector.h"
+
+#include <math.h>
+#include <mujoco/mujoco.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// Its own settings, by their numbers.
+enum { OWN_INTEGRATOR };
+
+// What some 2 GiB hold.
+#define MOST_NUMBERS 1e8
+
+static const char *const integrators[] = {"Euler", "implicit", "RK4"};
+
+typedef struct MujocoWorld {
+    ck_ScaledModel scaled; // its pins are let go there
+    ck_Settings used;
+    mjModel *model;
+    mjData *data;
+    int *body; // [particle_count] of each particle; 0, the world, where it is pinned
+} MujocoWorld;
+
+static const char *version(void) {
+    static char text[40];
+    snprintf(text, sizeof text, "%s double", mj_versionString());
+    return text;
+}
+
+// MuJoCo's own would ask for a key and write into the user's folder.
+static void fail_fatally(const char *message) {
+    fprintf(stderr, "MuJoCo: %s\n", message);
+    _exit(1);
+}
+
+static void ignore(const char *message) {
+    (void)message;
+}
+
+static int integrator_of(const ck_Settings *used) {
+    return (int)ck_settings_own(used, OWN_INTEGRATOR, 0);
+}
+
+// Time step: springs are explicit forces, stable to 2/ω; half of that, so that a cloth that folds stays inside, and the
+// same of damping; drag, implicit, a tenth of its time; in contact 1/1000 s, and an impact with restitution is over
+// within a quarter of a frame, or it would be seen half done.
+static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
+    double frequency = 0, limit = 1.0 / 240;
+    *used = (ck_Settings){.substeps = wanted->substeps};
+    ck_settings_take_own(used, wanted);
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    if (status) return status;
+    if (frequency > 0) limit = fmin(limit, 1 / frequency);
+    limit = fmin(limit, 1 / ck_stability_damping_rate(model));
+    limit = fmin(limit, ck_stability_drag_time(model, 0.1));
+    if (model->collider_count) limit = fmin(limit, 1.0 / 1000);
+    for (int i = 0; i < model->collider_count; i++)
+        if (model->colliders[i].restitution > 0) limit = fmin(limit, model->step / (4 * CK_MUJOCO_BOUNCE_STEPS));
+    if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
+    ck_scaled_model_ledger(ledger, model);
+    ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "option/timestep", model->step / used->substeps,
+                                         "step / substeps", CK_EXACT});
+    ck_ledger_add_masses(ledger, model,
+                         (ck_LedgerRow){.unit = "kg",
+                                        .native_parameter = "inertial/mass",
+                                        .formula = "m; a site of the world where pinned",
+                                        .match = CK_EXACT},
+                         false);
+    if (model->terms & CK_TERM_GRAVITY)
+        ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "option/gravity",
+                                             ck_length(model->gravity), "g", CK_EXACT});
+    if (model->terms & CK_TERM_FORCE)
+        ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "xfrc_applied",
+                                             ck_length(model->force), "F on each body", CK_EXACT});
+    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
+        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
+        if (spring)
+            ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m",
+                                                 "spatial/stiffness", spring->stiffness, "k", CK_EXACT});
+    }
+    if (model->terms & CK_TERM_DAMPING)
+        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "spatial/damping",
+                                             model->springs[0].damping, "c", CK_EXACT});
+    if (model->terms & CK_TERM_DRAG)
+        ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "joint/damping", model->drag,
+                                             "drag*m of each slide joint", CK_EXACT});
+    ck_ledger_add_colliders(
+        ledger, model,
+        (ck_LedgerRow){"restitution", 0, "1", "solref", 0,
+                       "-k, -b: e = exp(-2*z*acos(z)/sqrt(1 - z^2)), z = b/(2*sqrt(k))", CK_APPROXIMATE},
+        (ck_LedgerRow){"friction", 0, "1", "geom/friction", 0, "mu, an elliptic cone; it creeps", CK_APPROXIMATE});
+    return CK_OK;
+}
+
+static void unload(MujocoWorld *world) {
+    if (world->data) mj_deleteData(world->data);
+    if (world->model) mj_deleteModel(world->model);
+    world->data = NULL;
+    world->model = NULL;
+}
+
+static void destroy(void *state) {
+    MujocoWorld *world = state;
+    unload(world);
+    ck_scaled_model_free(&world->scaled);
+    free(world->body);
+    free(world);
+}
+
+// MuJoCo reads its own kind of files in memory, of which there are many: 2 MB of names.
+static mjModel *compile(const char *text, size_t length, char *reason, int size) {
+    mjVFS *files = malloc(sizeof *files);
+    mjModel *model = NULL;
+    if (!files) return NULL;
+    mj_defaultVFS(files);
+    if (!mj_makeEmptyFileVFS(files, "scene.xml", (int)length)) {
+        memcpy(files->filedata[mj_findFileVFS(files, "scene.xml")], text, length);
+        model = mj_loadXML("scene.xml", files, reason, size);
+    }
+    mj_deleteVFS(files);
+    free(files);
+    return model;
+}
+
+// Compiles the scaled model as it is now, and sets its state.
+static ck_Status load(MujocoWorld *world, ck_Error *error) {
+    const ck_Model *model = &world->scaled.model;
+    const ck_MujocoOptions options = {model->step / world->used.substeps, integrators[integrator_of(&world->used)],
+                                      ck_mujoco_radius(model)};
+    size_t length;
+    char reason[300] = "", *text = ck_mujoco_xml(model, &options, &length);
+    if (!text) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    unload(world);
+    world->model = compile(text, length, reason, sizeof reason);
+    free(text);
+    if (!world->model) return ck_fail(error, CK_REFUSED, "MuJoCo: %s", reason);
+    world->data = mj_makeData(world->model);
+    if (!world->data) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < model->particle_count; i++) {
+        char name[20];
+        snprintf(name, sizeof name, "b%d", i);
+        world->body[i] = model->pinned[i] ? 0 : mj_name2id(world->model, mjOBJ_BODY, name);
+        if (!world->body[i]) continue;
+        const int joint = world->model->body_dofadr[world->body[i]];
+        for (int axis = 0; axis < 3; axis++) {
+            world->data->qvel[joint + axis] = model->velocity[3 * i + axis];
+            world->data->xfrc_applied[6 * world->body[i] + axis] = model->force[axis];
+        }
+    }
+    return CK_OK;
+}
+
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    mju_user_error = fail_fatally;
+    mju_user_warning = ignore;
+    ck_Status status = translate(model, wanted, used, ledger);
+    if (status) return ck_fail(error, status, "out of memory");
+    // it keeps each tendon's pull on each joint, and counts in 32 bits
+    double numbers = 3.0 * model->spring_count * model->particle_count;
+    if (numbers > MOST_NUMBERS)
+        return ck_fail(error, CK_REFUSED,
+                       "MuJoCo keeps springs x 3 x particles numbers: this scene's are %.3g, the most taken %g",
+                       numbers, MOST_NUMBERS);
+    MujocoWorld *world = calloc(1, sizeof *world);
+    if (!world) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    world->used = *used;
+    world->body = calloc((size_t)model->particle_count, sizeof *world->body);
+    status = ck_scaled_model_create(&world->scaled, model);
+    if (status || !world->body)
+        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    else
+        status = load(world, error);
+    if (status) {
+        destroy(world);
+        return status;
+    }
+    *state = world;
+    return CK_OK;
+}
+
+static bool has_left(const mjData *data) {
+    return data->warning[mjWARN_BADQPOS].number || data->warning[mjWARN_BADQVEL].number ||
+           data->warning[mjWARN_BADQACC].number;
+}
+
+static ck_StepResult step(void *state) {
+    MujocoWorld *world = state;
+    if (!world->data) return CK_STEP_NO_MEMORY;
+    for (uint32_t i = 0; i < world->used.substeps; i++) {
+        mj_step(world->model, world->data);
+        // it would begin anew from the start, and say nothing
+        if (has_left(world->data)) return CK_STEP_DIVERGED;
+    }
+    return CK_STEP_OK;
+}
+
+static void read_units(const MujocoWorld *world, double *position, double *velocity, double unit) {
+    const ck_Model *model = &world->scaled.model;
+    for (int i = 0; i < 3 * model->particle_count; i++) {
+        const int body = world->body[i / 3], joint = body ? world->model->body_dofadr[body] + i % 3 : 0;
+        position[i] = unit * (model->position[i] + (body ? world->data->qpos[joint] : 0));
+        velocity[i] = body ? unit * world->data->qvel[joint] : 0;
+    }
+}
+
+static void read_state(const void *state, double *position, double *velocity) {
+    const MujocoWorld *world = state;
+    if (world->data) read_units(world, position, velocity, world->scaled.length);
+}
+
+// What is fixed to the world stays so in a compiled model: another one is made, from where everything is now.
+static void release(void *state, int particle) {
+    MujocoWorld *world = state;
+    ck_Model *model = &world->scaled.model;
+    if (!world->data) return;
+    size_t count = 3 * (size_t)model->particle_count;
+    double *now = malloc(2 * count * sizeof *now);
+    if (now) {
+        read_units(world, now, now + count, 1);
+        memcpy(model->position, now, count * sizeof *now);
+        memcpy(model->velocity, now + count, count * sizeof *now);
+    }
+    free(now);
+    model->pinned[particle] = false;
+    memset(model->velocity + 3 * particle, 0, 3 * sizeof(double));
+    if (!now || load(world, NULL)) unload(world);
+}
+
+static const ck_Setting settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "half of the largest stable step",
+     .help = "steps a frame"},
+    {.name = "integrator",
+     .slot = CK_OWN + OWN_INTEGRATOR,
+     .is_whole = true,
+     .least = 0,
+     .most = 2,
+     .unit = "1",
+     .rule = "0",
+     .help = "0 Euler, 1 implicit in velocity, 2 RK4",
+     .leaves_theory = true},
+    {0},
+};
+
+const ck_Engine ck_mujoco = {
+    .name = "mujoco",
+    .about = "slide joints and spatial tendons, soft contact with an elliptic cone",
+    .family = "MuJoCo",
+    .version = version,
+    .method = CK_METHOD_SYMPLECTIC_EULER,
+    .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
+    .settings = settings,
+    .order = 1,
+    .create = create,
+    .step = step,
+    .read = read_state,
+    .release = release,
+    .destroy = destroy,
+};

@@ -1,0 +1,135 @@
+#include "mujoco_xml.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+double ck_mujoco_radius(const ck_Model *model) {
+    double radius = 0.1 * model->spacing;
+    for (int i = 0; i < model->collider_count; i++)
+        if (model->colliders[i].shape == CK_SPHERE) radius = fmin(radius, 0.1 * model->colliders[i].radius);
+    return radius;
+}
+
+// Steps that a contact without restitution takes to come to rest.
+#define REST_STEPS 2.0
+
+// The damping ratio ζ of a spring and damper that let a particle go with e times the speed that it came with, and
+// cannot pull: e = exp(−2·ζ·acos ζ/√(1 − ζ²)), beyond 1 with acosh. Source: derived from x'' + 2·ζ·x' + x = 0, up to
+// where the force is 0.
+static double damping_ratio(double restitution) {
+    double low = 0, high = 100;
+    for (int i = 0; i < 60; i++) {
+        double ratio = 0.5 * (low + high), root = sqrt(fabs(1 - ratio * ratio));
+        double angle = root < 1e-9 ? 1 : (ratio < 1 ? acos(ratio) : acosh(ratio)) / root;
+        if (exp(-2 * ratio * angle) > restitution)
+            low = ratio;
+        else
+            high = ratio;
+    }
+    return low;
+}
+
+// A contact is a spring and a damper, by how MuJoCo takes solref: with restitution as −k and −b of the relative
+// acceleration −b·v − k·r; without, as a time constant, critically damped. solimp near 1, or a part of the motion would
+// be left as it is.
+static void write_contact(FILE *out, const ck_Collider *collider, double step) {
+    if (collider->restitution > 0) {
+        double frequency = M_PI / (CK_MUJOCO_BOUNCE_STEPS * step);
+        fprintf(out, " solref=\"%.17g %.17g\"", -frequency * frequency,
+                -2 * damping_ratio(collider->restitution) * frequency);
+    } else {
+        fprintf(out, " solref=\"%.17g 1\"", REST_STEPS * step);
+    }
+    fprintf(out, " solimp=\"0.9999 0.9999 0.001\" condim=\"%d\" friction=\"%.17g 0 0\"", collider->friction > 0 ? 3 : 1,
+            collider->friction);
+}
+
+// The rotation that turns the z axis, which is a plane's normal, into a direction.
+static void write_turn(FILE *out, const double *normal) {
+    fprintf(out, " zaxis=\"%.17g %.17g %.17g\"", normal[0], normal[1], normal[2]);
+}
+
+// A plane sinks and a ball shrinks by the radius of what stands for a particle.
+static void write_collider(FILE *out, const ck_Collider *collider, const ck_MujocoOptions *options) {
+    const double *at = collider->point, *normal = collider->normal;
+    fprintf(out, "<geom contype=\"0\" conaffinity=\"1\"");
+    if (collider->shape == CK_SPHERE) {
+        fprintf(out, " type=\"sphere\" size=\"%.17g\" pos=\"%.17g %.17g %.17g\"", collider->radius - options->radius,
+                at[0], at[1], at[2]);
+    } else {
+        fprintf(out, " type=\"plane\" size=\"0 0 1\" pos=\"%.17g %.17g %.17g\"", at[0] - options->radius * normal[0],
+                at[1] - options->radius * normal[1], at[2] - options->radius * normal[2]);
+        write_turn(out, normal);
+    }
+    write_contact(out, collider, options->step);
+    fprintf(out, "/>\n");
+}
+
+static void write_particle(FILE *out, const ck_Model *model, int particle, const ck_MujocoOptions *options) {
+    const double *at = model->position + 3 * particle;
+    if (model->pinned[particle]) {
+        fprintf(out, "<site name=\"s%d\" pos=\"%.17g %.17g %.17g\"/>\n", particle, at[0], at[1], at[2]);
+        return;
+    }
+    // it does not turn, so that any inertia does
+    double mass = model->mass[particle], inertia = 0.1 * mass * model->spacing * model->spacing;
+    fprintf(
+        out,
+        "<body name=\"b%d\" pos=\"%.17g %.17g %.17g\"><inertial pos=\"0 0 0\" mass=\"%.17g\" diaginertia=\"%.17g %.17g "
+        "%.17g\"/>",
+        particle, at[0], at[1], at[2], mass, inertia, inertia, inertia);
+    for (int axis = 0; axis < 3; axis++)
+        fprintf(out, "<joint type=\"slide\" axis=\"%d %d %d\" damping=\"%.17g\"/>", axis == 0, axis == 1, axis == 2,
+                model->drag * mass);
+    fprintf(out, "<site name=\"s%d\"/>", particle);
+    if (model->collider_count)
+        fprintf(out,
+                "<geom type=\"sphere\" size=\"%.17g\" contype=\"1\" conaffinity=\"0\" condim=\"1\" friction=\"0 0 0\" "
+                "priority=\"-1\" mass=\"0\"/>",
+                options->radius);
+    fprintf(out, "</body>\n");
+}
+
+static void write_springs(FILE *out, const ck_Model *model) {
+    fprintf(out, "<tendon>\n");
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        if (model->pinned[spring->a] && model->pinned[spring->b]) continue;
+        fprintf(out,
+                "<spatial stiffness=\"%.17g\" damping=\"%.17g\" springlength=\"%.17g\"><site site=\"s%d\"/><site "
+                "site=\"s%d\"/></spatial>\n",
+                spring->stiffness, spring->damping, spring->rest, spring->a, spring->b);
+    }
+    fprintf(out, "</tendon>\n");
+}
+
+// Numbers that its steps may keep at once. The implicit integrator asks for some thousand a particle.
+static int stack_of(const ck_Model *model) {
+    return (int)fmin(2e8, 1e6 + 4e3 * model->particle_count);
+}
+
+char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size_t *length) {
+    char *text = NULL;
+    FILE *out = open_memstream(&text, length);
+    if (!out) return NULL;
+    const double *g = model->gravity;
+    fprintf(out,
+            "<mujoco><compiler boundmass=\"0\" boundinertia=\"0\" autolimits=\"true\"/>\n<option timestep=\"%.17g\" "
+            "gravity=\"%.17g %.17g %.17g\" integrator=\"%s\" jacobian=\"sparse\" cone=\"elliptic\" tolerance=\"0\" "
+            "iterations=\"100\"/>\n<size njmax=\"%d\" nconmax=\"%d\" nstack=\"%d\"/>\n<worldbody>\n",
+            options->step, g[0], g[1], g[2], options->integrator,
+            10 + 3 * model->particle_count * model->collider_count, 10 + model->particle_count * model->collider_count,
+            stack_of(model));
+    for (int i = 0; i < model->collider_count; i++) write_collider(out, &model->colliders[i], options);
+    for (int i = 0; i < model->particle_count; i++) write_particle(out, model, i, options);
+    fprintf(out, "</worldbody>\n");
+    write_springs(out, model);
+    fprintf(out, "</mujoco>\n");
+    // a stream in memory fails for lack of it alone
+    if (fclose(out)) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
