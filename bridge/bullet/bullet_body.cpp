@@ -5,14 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
-
-extern "C" const char *ck_bullet_version(void) {
-    static char text[24];
-    std::snprintf(text, sizeof text, "%d.%02d double", btGetVersion() / 100, btGetVersion() % 100);
-    return text;
-}
 
 ck_BulletModel::ck_BulletModel(const ck_Model *scene) : scaled() {
     if (ck_scaled_model_create(&scaled, scene)) throw std::bad_alloc();

@@ -2,6 +2,7 @@
 #ifndef CK_BULLET_BODY_HPP
 #define CK_BULLET_BODY_HPP
 
+#include "bullet_guard.hpp"
 #include "bullet_loops.h"
 #include "engine.h"
 #include "scaled_model.h"
@@ -71,20 +72,5 @@ bool ck_bullet_body_is_finite(const ck_BulletBody &body);
 //   force_parameter  where the world takes the force;  friction_formula  what it makes of friction
 void ck_bullet_ledger(ck_Ledger *ledger, const ck_Model *model, const ck_Settings &used, const char *force_parameter,
                       const char *friction_formula);
-
-// Calls work, and turns what it throws into a status: nothing that Bullet or the library throws may reach C.
-template <typename Work> ck_Status ck_bullet_guarded(ck_Error *error, Work work) noexcept {
-    try {
-        return work();
-    } catch (const std::bad_alloc &) {
-        return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    } catch (const std::exception &thrown) {
-        return ck_fail(error, CK_REFUSED, "Bullet's bridge: %s", thrown.what());
-    } catch (...) {
-        return ck_fail(error, CK_REFUSED, "Bullet's bridge: an exception of unknown kind");
-    }
-}
-
-extern "C" const char *ck_bullet_version(void);
 
 #endif

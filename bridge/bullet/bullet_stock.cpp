@@ -1,6 +1,6 @@
 // Bullet's classic soft body as its demos and documentation use it: nothing is corrected. Beside bullet-pbd it shows
 // what the corrections buy, and what games that ship it get.
-#include "bullet_body.hpp"
+#include "bullet_guard.hpp"
 #include "collider.h"
 #include "engine.h"
 #include "time_scale.h"
@@ -11,6 +11,8 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 namespace {
 
@@ -24,7 +26,7 @@ const double half_side = 200;
 struct Stock {
     ck_Model model; // the caller's, but for its pins
     ck_Settings used;
-    double fixed_step; // s
+    btScalar fixed_step; // s
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     std::unique_ptr<btSoftBody> soft;
@@ -145,9 +147,9 @@ void add_colliders(Stock &stock) {
 }
 
 // So that a frame has as many of them as it should: stepSimulation counts by a quotient that may be rounded down.
-double fixed_step_of(double step, uint32_t substeps) {
-    double fixed = step / substeps;
-    while (static_cast<int>(step / fixed) < static_cast<int>(substeps)) fixed = std::nextafter(fixed, 0);
+btScalar fixed_step_of(btScalar step, uint32_t substeps) {
+    btScalar fixed = step / static_cast<btScalar>(substeps);
+    while (static_cast<int>(step / fixed) < static_cast<int>(substeps)) fixed = std::nextafter(fixed, btScalar(0));
     return fixed;
 }
 
@@ -158,7 +160,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         auto stock = std::make_unique<Stock>();
         stock->model = *model;
         stock->used = *used;
-        stock->fixed_step = fixed_step_of(model->step, used->substeps);
+        stock->fixed_step = fixed_step_of(static_cast<btScalar>(model->step), used->substeps);
         const btVector3 gravity(model->gravity[0], model->gravity[1], model->gravity[2]);
         btSoftBodyWorldInfo &info = stock->world.getWorldInfo();
         stock->world.setGravity(gravity);
@@ -176,7 +178,8 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
 ck_StepResult step(void *state) {
     Stock &stock = *static_cast<Stock *>(state);
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
-        stock.world.stepSimulation(stock.model.step, static_cast<int>(stock.used.substeps), stock.fixed_step);
+        stock.world.stepSimulation(static_cast<btScalar>(stock.model.step), static_cast<int>(stock.used.substeps),
+                                   stock.fixed_step);
         return CK_OK;
     });
     if (status) return CK_STEP_NO_MEMORY;
@@ -265,7 +268,7 @@ const ck_Setting settings[] = {
 } // namespace
 
 extern "C" const ck_Engine ck_bullet_stock = {
-    .name = "bullet-stock",
+    .name = sizeof(btScalar) == sizeof(double) ? "bullet-stock" : "bullet-stock-float",
     .about = "classic btSoftBody as its demos use it: stepSimulation, nothing corrected",
     .family = "Bullet",
     .version = ck_bullet_version,
@@ -273,6 +276,7 @@ extern "C" const ck_Engine ck_bullet_stock = {
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_DRAG | CK_TERM_VELOCITY |
              CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
     .settings = settings,
+    .is_single = sizeof(btScalar) == sizeof(float),
     .is_stock = true,
     .create = create,
     .step = step,

@@ -5,27 +5,44 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct { double x[3], v[3], f[3], mass; int pinned; } Particle;
-typedef struct { int a, b; double rest, k, c; } Spring;
+typedef struct {
+    double x[3], v[3], f[3], mass;
+    int pinned;
+} Particle;
+typedef struct {
+    int a, b;
+    double rest, k, c;
+} Spring;
 static Particle *particles;
 static Spring *springs;
 static double frame, gravity[3], force[3], drag;
 static int n, m, substeps;
 static char word[64];
 
-static int next_word(void) { return scanf("%63s", word) == 1; }
-static double number(void) { return next_word() ? strtod(word, NULL) : 0; }
-static void vector(double *to) { for (int axis = 0; axis < 3; axis++) to[axis] = number(); }
+static int next_word(void) {
+    return scanf("%63s", word) == 1;
+}
+static double number(void) {
+    return next_word() ? strtod(word, NULL) : 0;
+}
+static void vector(double *to) {
+    for (int axis = 0; axis < 3; axis++) to[axis] = number();
+}
 
 // The scene in SI units, up to the line "end": what is not used is stepped over.
 static void begin(void) {
     double rate = 0; // k/m of all springs on the lightest particle, 1/s2
     while (next_word() && strcmp(word, "end")) {
-        if (!strcmp(word, "step")) frame = number();
-        else if (!strcmp(word, "gravity")) vector(gravity);
-        else if (!strcmp(word, "force")) vector(force);
-        else if (!strcmp(word, "drag")) drag = number();
-        else if (!strcmp(word, "substeps")) substeps = (int)number();
+        if (!strcmp(word, "step"))
+            frame = number();
+        else if (!strcmp(word, "gravity"))
+            vector(gravity);
+        else if (!strcmp(word, "force"))
+            vector(force);
+        else if (!strcmp(word, "drag"))
+            drag = number();
+        else if (!strcmp(word, "substeps"))
+            substeps = (int)number();
         else if (!strcmp(word, "particles")) {
             particles = calloc((n = (int)number()), sizeof *particles);
             for (Particle *p = particles; p < particles + n; p++)
@@ -60,14 +77,18 @@ static void step(double dt) {
 
 int main(void) {
     for (; next_word() && strcmp(word, "quit"); fflush(stdout)) {
-        if (!strcmp(word, "clothcheck") && next_word()) printf("clothcheck 1\n");
+        if (!strcmp(word, "clothcheck") && next_word())
+            printf("clothcheck 1\n");
         else if (!strcmp(word, "hello"))
             printf("version 1.0\nmodels springs damping gravity force drag velocity release\npositions raw\n"
                    "setting substeps 1 1e6 whole steps a frame\nend\n");
-        else if (!strcmp(word, "begin")) begin();
-        else if (!strcmp(word, "release")) particles[(int)number()].pinned = 0;
+        else if (!strcmp(word, "begin"))
+            begin();
+        else if (!strcmp(word, "release"))
+            particles[(int)number()].pinned = 0;
         else if (!strcmp(word, "read")) // all places, then all velocities
-            for (int i = 0; i < 2 * n; i++) fwrite(i < n ? particles[i].x : particles[i - n].v, sizeof(double), 3, stdout);
+            for (int i = 0; i < 2 * n; i++)
+                fwrite(i < n ? particles[i].x : particles[i - n].v, sizeof(double), 3, stdout);
         else { // step, ping
             for (int i = 0; !strcmp(word, "step") && i < substeps; i++) step(frame / substeps);
             printf("ok\n");

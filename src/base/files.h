@@ -28,6 +28,10 @@ int ck_path_make(const char *directory);
 // is installed in, else its source tree. False where there is none.
 bool ck_path_data(char *out, size_t size);
 
+// The program of a name among those that came with this one and are talked to: adapters/NAME beside it, or
+// libexec/clothcheck/adapters/NAME where it is installed. False where there is none.
+bool ck_path_adapter(char *out, size_t size, const char *name);
+
 // What tells two inputs apart.
 
 #define CK_HASH_START 0xcbf29ce484222325u

@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include "files.h"
 #include "names.h"
 #include "outside.h"
 
@@ -200,6 +201,16 @@ static bool is_library(const char *text) {
     return length > 3 && !strcmp(text + length - 3, ".so") && !strchr(text, ' ');
 }
 
+// Adds an engine from outside to the table, which keeps it, and to those that are asked for.
+static ck_Status take_outside(ck_Arguments *arguments, ck_Engine *engine, ck_Error *error) {
+    ck_Status status = ck_engines_add(engine, error);
+    if (!status)
+        add_engine(arguments, engine);
+    else
+        ck_outside_free(engine);
+    return status;
+}
+
 // NAME=COMMAND, NAME=LIBRARY.so or LIBRARY.so.
 static ck_Status add_outside(ck_Arguments *arguments, const char *text, ck_Error *error) {
     char name[64];
@@ -207,14 +218,18 @@ static ck_Status add_outside(ck_Arguments *arguments, const char *text, ck_Error
     const char *equals = strchr(text, '='), *rest = equals ? equals + 1 : text;
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - text) : 0, text);
     ck_Status status = is_library(rest) ? ck_outside_library(&engine, equals ? name : NULL, rest, error)
-                                        : ck_outside_command(&engine, name, rest, error);
-    if (status) return status;
-    status = ck_engines_add(engine, error);
-    if (!status)
-        add_engine(arguments, engine);
-    else
-        ck_outside_free(engine);
-    return status;
+                                        : ck_outside_command(&engine, name, rest, false, error);
+    return status ? status : take_outside(arguments, engine, error);
+}
+
+// One of the programs that came with this one, by its name.
+static ck_Status add_adapter(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    char path[4300], line[4310];
+    ck_Engine *engine;
+    if (!ck_path_adapter(path, sizeof path, text)) return fail_engine(text, error);
+    snprintf(line, sizeof line, "'%s'", path);
+    ck_Status status = ck_outside_command(&engine, text, line, true, error);
+    return status ? status : take_outside(arguments, engine, error);
 }
 
 static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error) {
@@ -225,7 +240,7 @@ static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error
             add_engine(arguments, ck_engine_at(i));
             found++;
         }
-    return found ? CK_OK : fail_engine(text, error);
+    return found ? CK_OK : add_adapter(arguments, text, error);
 }
 
 static ck_Status fail_unknown_key(const char *text, const char *key, const ck_Engine *engine, ck_Error *error) {

@@ -147,6 +147,8 @@ static void line(FILE *out, const char *word, const double *numbers, int count) 
 void ck_export_lines(FILE *out, const ck_Model *model) {
     fprintf(out, "frames %d\n", model->frame_count);
     line(out, "step", &model->step, 1);
+    line(out, "size", &model->size, 1);
+    line(out, "spacing", &model->spacing, 1);
     line(out, "gravity", model->gravity, 3);
     line(out, "force", model->force, 3);
     line(out, "drag", &model->drag, 1);

@@ -1,6 +1,7 @@
 // A command as an engine. bridge/README.md has the words that it is talked to with.
 #include "export.h"
 #include "outside_engine.h"
+#include "outside_words.h"
 #include "process.h"
 #include "talk.h"
 
@@ -13,10 +14,6 @@
 // Seconds in which a command must say what it is.
 #define HELLO_SECONDS 10
 #define MOST_SETTINGS (CK_OWN + CK_OWN_SETTINGS)
-
-// The words for what a scene may have, in the order of ck_Term.
-static const char *const term_words[CK_TERM_COUNT] = {"springs", "rigid",    "damping", "gravity", "force",
-                                                      "drag",    "velocity", "plane",   "sphere",  "release"};
 
 // One line of what it can be set.
 typedef struct SettingText {
@@ -50,7 +47,7 @@ typedef struct Session {
 static void take_terms(Hello *hello, ck_Talk *talk, char *words) {
     for (char *word = strtok(words, " "); word; word = strtok(NULL, " ")) {
         int term = 0;
-        while (term < CK_TERM_COUNT && strcmp(word, term_words[term])) term++;
+        while (term < CK_TERM_COUNT && strcmp(word, ck_term_words[term])) term++;
         if (term == CK_TERM_COUNT)
             ck_talk_refuse(talk, word,
                            "models with words of springs rigid damping gravity force drag velocity plane "
@@ -265,7 +262,7 @@ static ck_Status ask(Command *command, const char *name, ck_Error *error) {
     return status;
 }
 
-ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *line, ck_Error *error) {
+ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *line, bool is_known, ck_Error *error) {
     *engine = NULL;
     ck_OutsideEngine *made = ck_outside_new(name);
     Command *command = calloc(1, sizeof *command);
@@ -282,7 +279,10 @@ ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *l
     made->free_source = free_command;
     snprintf(made->about, sizeof made->about, "a command: %.140s", line);
     snprintf(made->version, sizeof made->version, "%s", command->hello.version);
-    ck_outside_option(made, name, line);
+    if (is_known)
+        snprintf(made->arguments, sizeof made->arguments, "--engine %s", name);
+    else
+        ck_outside_option(made, name, line);
     made->outside.open = open_command;
     made->outside.source = command;
     made->outside.cpu = cpu;

@@ -11,10 +11,10 @@ ck_Status ck_outside_recording(ck_Engine **engine, const char *name, const char 
                                double frame_cost, const ck_Model *model, ck_Error *error);
 
 // Starts a command and asks what it is; runs start it again.
-//   line  as a shell reads it
+//   line  as a shell reads it;  is_known  it is found by its name alone, as those that came with the program
 // Errors: CK_BAD_INPUT where it does not answer as it must, with its last words; CK_IO, CK_NO_MEMORY. Free with
 // ck_outside_free.
-ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *line, ck_Error *error);
+ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *line, bool is_known, ck_Error *error);
 
 // Loads a shared library that has a ck_Plugin (plugin.h), in processes of their own.
 //   name  NULL: its engine's

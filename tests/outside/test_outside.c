@@ -54,7 +54,7 @@ static void test_four_ways(void **state) {
     write_recording(path, &run.trajectory);
     ck_run_free(&run);
     if (ck_outside_library(&made[0], NULL, FLOAT_LIBRARY, &error)) fail_msg("%s", error.message);
-    if (ck_outside_command(&made[1], "command", FLOAT_ADAPTER, &error)) fail_msg("%s", error.message);
+    if (ck_outside_command(&made[1], "command", FLOAT_ADAPTER, false, &error)) fail_msg("%s", error.message);
     if (ck_outside_recording(&made[2], "recorded", path, 0, 1e-4, &comparison.model, &error))
         fail_msg("%s", error.message);
     const ck_Engine *list[] = {&float_engine, made[0], made[1], made[2]};
@@ -131,7 +131,7 @@ static void test_hostile(void **state) {
         ck_Limits limits = ck_limits_default();
         limits.seconds = cases[i].status == CK_RUN_TIMED_OUT ? 2 : 60;
         snprintf(line, sizeof line, "%s %s", HOSTILE, cases[i].mode);
-        if (ck_outside_command(&engine, "hostile", line, &error)) fail_msg("%s", error.message);
+        if (ck_outside_command(&engine, "hostile", line, false, &error)) fail_msg("%s", error.message);
         if (ck_run_measure(&run, &comparison.model, engine, &(ck_Settings){0}, &limits, &error))
             fail_msg("%s", error.message);
         if (run.status != cases[i].status || !strstr(run.reason, cases[i].reason))
@@ -159,7 +159,7 @@ static void test_refused(void **state) {
     ck_Engine *engine;
     ck_Error error;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        assert_int_equal(ck_outside_command(&engine, "x", cases[i].mode, &error), CK_BAD_INPUT);
+        assert_int_equal(ck_outside_command(&engine, "x", cases[i].mode, false, &error), CK_BAD_INPUT);
         if (!strstr(error.message, cases[i].wanted)) fail_msg("%s: %s", cases[i].mode, error.message);
         assert_null(engine);
     }
@@ -175,7 +175,7 @@ static void run_example(ck_Run *run, const ck_Model *model, const char *name, co
     ck_Engine *engine;
     ck_Error error = {0};
     const ck_Limits limits = ck_limits_default();
-    if (ck_outside_command(&engine, name, line, &error)) fail_msg("%s", error.message);
+    if (ck_outside_command(&engine, name, line, false, &error)) fail_msg("%s", error.message);
     if (ck_run_measure(run, model, engine, &(ck_Settings){.substeps = 60}, &limits, &error))
         fail_msg("%s", error.message);
     if (run->status != CK_RUN_OK) fail_msg("%s: %s", name, run->reason);

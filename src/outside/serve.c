@@ -1,0 +1,234 @@
+#include "serve.h"
+
+#include "outside_words.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Server {
+    const ck_Engine *engine;
+    ck_Model model; // owned
+    ck_Settings wanted;
+    void *world;   // NULL: not begun
+    double *state; // [6*n]
+    char word[64];
+} Server;
+
+// What is asked is not as it must be: the other end is told by the exit status, and a person by these words.
+static _Noreturn void fail(const char *what) {
+    fprintf(stderr, "%s\n", what);
+    exit(1);
+}
+
+static bool next_word(Server *server) {
+    return scanf("%63s", server->word) == 1;
+}
+
+static double number(Server *server) {
+    char *end;
+    if (!next_word(server)) fail("the scene ends within a number");
+    double value = strtod(server->word, &end);
+    if (*end) fail("the scene holds a word where a number must be");
+    return value;
+}
+
+static int count(Server *server) {
+    double value = number(server);
+    if (!(value >= 0 && value <= 4e6) || floor(value) != value) fail("the scene holds no count where one must be");
+    return (int)value;
+}
+
+static void vector(Server *server, double *to) {
+    for (int axis = 0; axis < 3; axis++) to[axis] = number(server);
+}
+
+static void *allocate(size_t items, size_t size) {
+    void *memory = calloc(items + 1, size);
+    if (!memory) fail("out of memory");
+    return memory;
+}
+
+static void read_particles(Server *server) {
+    ck_Model *model = &server->model;
+    model->particle_count = count(server);
+    const size_t n = (size_t)model->particle_count;
+    model->position = allocate(3 * n, sizeof(double));
+    model->velocity = allocate(3 * n, sizeof(double));
+    model->mass = allocate(n, sizeof(double));
+    model->pinned = allocate(n, sizeof(bool));
+    model->released = allocate(n, sizeof(bool));
+    server->state = allocate(6 * n, sizeof(double));
+    for (size_t i = 0; i < n; i++) {
+        vector(server, model->position + 3 * i);
+        vector(server, model->velocity + 3 * i);
+        model->mass[i] = number(server);
+        model->pinned[i] = number(server) > 0;
+        model->pin_count += model->pinned[i];
+    }
+}
+
+static void read_springs(Server *server) {
+    static const char *const kinds[CK_SPRING_KINDS] = {"structural", "shear", "bend"};
+    ck_Model *model = &server->model;
+    model->spring_count = count(server);
+    model->springs = allocate((size_t)model->spring_count, sizeof *model->springs);
+    for (int i = 0; i < model->spring_count; i++) {
+        ck_Spring *spring = &model->springs[i];
+        spring->a = count(server);
+        spring->b = count(server);
+        if (spring->a >= model->particle_count || spring->b >= model->particle_count)
+            fail("a spring joins a particle that is not there");
+        spring->rest = number(server);
+        spring->stiffness = number(server);
+        spring->damping = number(server);
+        if (!next_word(server)) fail("the scene ends within a spring");
+        for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
+            if (!strcmp(server->word, kinds[kind])) spring->kind = (ck_SpringKind)kind;
+    }
+}
+
+static void read_colliders(Server *server) {
+    ck_Model *model = &server->model;
+    model->collider_count = count(server);
+    model->colliders = allocate((size_t)model->collider_count, sizeof *model->colliders);
+    for (int i = 0; i < model->collider_count; i++) {
+        ck_Collider *collider = &model->colliders[i];
+        if (!next_word(server)) fail("the scene ends within a collider");
+        bool is_ball = !strcmp(server->word, "sphere");
+        collider->shape = is_ball ? CK_SPHERE : CK_PLANE;
+        vector(server, collider->point);
+        if (is_ball)
+            collider->radius = number(server);
+        else
+            vector(server, collider->normal);
+        collider->restitution = number(server);
+        collider->friction = number(server);
+    }
+}
+
+static void read_setting(Server *server) {
+    if (!next_word(server)) fail("the scene ends within a setting");
+    const ck_Setting *setting = ck_setting_find(server->engine->settings, server->word);
+    double value = number(server);
+    if (!setting) fail("there is no such setting");
+    ck_settings_set(&server->wanted, setting->slot, value);
+}
+
+// What the scene has, of its numbers.
+static unsigned terms_of(const ck_Model *model) {
+    const double none[3] = {0};
+    unsigned terms = model->spring_count ? CK_TERM_SPRINGS : 0;
+    for (int i = 0; i < model->spring_count; i++) {
+        if (isinf(model->springs[i].stiffness)) terms |= CK_TERM_RIGID;
+        if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
+    }
+    if (memcmp(model->gravity, none, sizeof none)) terms |= CK_TERM_GRAVITY;
+    if (memcmp(model->force, none, sizeof none)) terms |= CK_TERM_FORCE;
+    if (model->drag > 0) terms |= CK_TERM_DRAG;
+    for (int i = 0; i < 3 * model->particle_count; i++)
+        if (model->velocity[i] != 0) terms |= CK_TERM_VELOCITY;
+    for (int i = 0; i < model->collider_count; i++)
+        terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
+    return terms;
+}
+
+static void read_scene(Server *server) {
+    ck_Model *model = &server->model;
+    model->name = "scene";
+    model->body = CK_NETWORK;
+    while (next_word(server) && strcmp(server->word, "end")) {
+        const char *word = server->word;
+        if (!strcmp(word, "frames"))
+            model->frame_count = count(server);
+        else if (!strcmp(word, "step"))
+            model->step = number(server);
+        else if (!strcmp(word, "size"))
+            model->size = number(server);
+        else if (!strcmp(word, "spacing"))
+            model->spacing = number(server);
+        else if (!strcmp(word, "gravity"))
+            vector(server, model->gravity);
+        else if (!strcmp(word, "force"))
+            vector(server, model->force);
+        else if (!strcmp(word, "drag"))
+            model->drag = number(server);
+        else if (!strcmp(word, "particles"))
+            read_particles(server);
+        else if (!strcmp(word, "springs"))
+            read_springs(server);
+        else if (!strcmp(word, "colliders"))
+            read_colliders(server);
+        else if (!strcmp(word, "setting"))
+            read_setting(server);
+    }
+    model->duration = model->frame_count * model->step;
+    model->terms = terms_of(model);
+}
+
+static void begin(Server *server) {
+    ck_Error error = {0};
+    ck_Settings used = {0};
+    read_scene(server);
+    const ck_Engine *engine = server->engine;
+    ck_Status status = engine->create(&server->world, &server->model, &server->wanted, &used, NULL, &error);
+    if (status) {
+        printf("refuse %s\n", error.message);
+        return;
+    }
+    for (const ck_Setting *row = engine->settings; row && row->name; row++)
+        if (ck_settings_has(&used, row->slot)) printf("uses %s %.17g\n", row->name, ck_settings_get(&used, row->slot));
+    printf("ready\n");
+}
+
+static void say_hello(const ck_Engine *engine) {
+    printf("version %s\nmodels", engine->version());
+    for (int term = 0; term < CK_TERM_COUNT; term++)
+        if (engine->terms & (1u << term)) printf(" %s", ck_term_words[term]);
+    printf("\npositions raw\nprecision %s\n", engine->is_single ? "single" : "double");
+    for (const ck_Setting *row = engine->settings; row && row->name; row++)
+        printf("setting %s %.17g %.17g %s %.90s\n", row->name, row->least, row->most, row->is_whole ? "whole" : "real",
+               row->help);
+    printf("end\n");
+}
+
+static void tell_state(const Server *server) {
+    const size_t numbers = 3 * (size_t)server->model.particle_count;
+    server->engine->read(server->world, server->state, server->state + numbers);
+    fwrite(server->state, sizeof *server->state, 2 * numbers, stdout);
+}
+
+// A word that needs a world.
+static void serve_world(Server *server) {
+    if (!server->world) fail("it must begin first");
+    if (!strcmp(server->word, "step"))
+        printf(server->engine->step(server->world) == CK_STEP_OK ? "ok\n" : "diverged\n");
+    else if (!strcmp(server->word, "read"))
+        tell_state(server);
+    else if (!strcmp(server->word, "release")) {
+        int particle = count(server);
+        if (particle >= server->model.particle_count || !server->engine->release) fail("it cannot be let go");
+        server->engine->release(server->world, particle);
+    } else
+        fail("there is no such word");
+}
+
+int ck_serve(const ck_Engine *engine) {
+    Server server = {.engine = engine};
+    for (; next_word(&server) && strcmp(server.word, "quit"); fflush(stdout)) {
+        if (!strcmp(server.word, "clothcheck")) {
+            number(&server);
+            printf("clothcheck 1\n");
+        } else if (!strcmp(server.word, "hello")) {
+            say_hello(engine);
+        } else if (!strcmp(server.word, "ping")) {
+            printf("ok\n");
+        } else if (!strcmp(server.word, "begin")) {
+            begin(&server);
+        } else {
+            serve_world(&server);
+        }
+    }
+    return 0;
+}
