@@ -53,8 +53,8 @@ void ck_chart_file(char *name, size_t size, const ck_Chart *chart, const char *s
         snprintf(name, size, "%s.%s", scene, chart->name);
 }
 
-// Filled marks for native solvers, open ones for peers, lines for the origins; told apart without colour. Contrast with
-// white is at least 4.5 for all.
+// Told apart without colour; contrast with white is at least 4.5 for all. Beyond the table the colours come again with
+// other marks.
 ck_Look ck_chart_look(int engine) {
     static const ck_Look looks[] = {
         {"#00629b", 7, "●", "1"},  {"#b84300", 5, "■", "2"},  {"#00704f", 9, "▲", "3"},
@@ -63,7 +63,10 @@ ck_Look ck_chart_look(int engine) {
         {"#1d6b2f", 12, "◇", "4"}, {"#332288", 10, "▽", "5"}, {"#707070", 3, "✱", "(2,4)"},
         {"#a01515", 14, "⬠", "1"}, {"#006d77", 15, "⬟", "2"},
     };
-    return looks[engine % (int)(sizeof looks / sizeof *looks)];
+    const int count = sizeof looks / sizeof *looks;
+    ck_Look look = looks[(engine + engine / count) % count];
+    look.color = looks[engine % count].color;
+    return look;
 }
 
 // As gnuplot reads it between single quotes.
