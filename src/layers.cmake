@@ -7,14 +7,16 @@ set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 #   VECTOR_SOURCES  compiled once for each kind of vectors; they say CK_LOOP(name)
 #   USES            folders whose headers its own headers include
 #   USES_INSIDE     folders that only its sources include, so that its users do not see them
+#   DEFINITIONS     of its sources
 #   LIBRARIES       others, for its sources
 # Headers in inside/ are for the folder itself and for its tests.
 function(clothcheck_layer name)
-  cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "SOURCES;VECTOR_SOURCES;USES;USES_INSIDE;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "SOURCES;VECTOR_SOURCES;USES;USES_INSIDE;DEFINITIONS;LIBRARIES")
   list(TRANSFORM LAYER_USES PREPEND ck_)
   list(TRANSFORM LAYER_USES_INSIDE PREPEND ck_)
   add_library(ck_${name} STATIC ${LAYER_SOURCES})
   target_include_directories(ck_${name} PUBLIC . PRIVATE inside)
+  target_compile_definitions(ck_${name} PRIVATE ${LAYER_DEFINITIONS})
   target_link_libraries(ck_${name} PUBLIC options ${LAYER_USES} PRIVATE ${LAYER_USES_INSIDE} ${LAYER_LIBRARIES})
   if(LAYER_VECTOR_SOURCES)
     clothcheck_vectors(${name})
@@ -40,7 +42,7 @@ macro(clothcheck_vectors name)
     add_library(${objects} OBJECT ${LAYER_VECTOR_SOURCES})
     target_include_directories(${objects} PRIVATE . inside)
     target_link_libraries(${objects} PRIVATE options ${LAYER_USES} ${LAYER_USES_INSIDE})
-    target_compile_definitions(${objects} PRIVATE CK_VECTORS=${vectors}
+    target_compile_definitions(${objects} PRIVATE ${LAYER_DEFINITIONS} CK_VECTORS=${vectors}
       CK_VECTORS_NAME="$<$<NOT:$<STREQUAL:${vectors},plain>>:x86-64->${vectors}")
     # a root sets no error number
     target_compile_options(${objects} PRIVATE ${MACHINE_${vectors}} -fno-math-errno)

@@ -112,9 +112,9 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
 }
 
 ck_BulletNodes ck_bullet_nodes(const ck_BulletBody &body, btVector3 btSoftBody::Node::*position) {
-    static_assert(sizeof(btSoftBody::Node) % sizeof(double) == 0, "nodes are whole doubles apart");
+    static_assert(sizeof(btSoftBody::Node) % sizeof(btScalar) == 0, "nodes are whole numbers apart");
     const btSoftBody::Node &first = body.soft->m_nodes[0];
-    return {&(first.*position)[0], &first.m_v[0], sizeof first / sizeof(double)};
+    return {&(first.*position)[0], &first.m_v[0], sizeof first / sizeof(btScalar)};
 }
 
 void ck_bullet_body_read(const ck_BulletBody &body, double length, double *position, double *velocity) {

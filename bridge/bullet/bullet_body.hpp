@@ -12,7 +12,7 @@
 #include <new>
 #include <vector>
 
-static_assert(sizeof(btScalar) == 8, "Bullet must be built in double precision: link bullet-float64");
+static_assert(sizeof(btScalar) == sizeof(ck_BulletScalar), "the loops must be of the precision of the Bullet linked");
 
 // A model in units of its own, whose pins can be let go: what a world is built from again when they are.
 class ck_BulletModel {
@@ -38,7 +38,7 @@ class ck_BulletModel {
 struct ck_BulletLinkTable {
     std::vector<int> start, other;
     std::vector<int> link; // of the soft body, that each of them is
-    std::vector<double> rest, stiffness, damping, normal, length;
+    std::vector<btScalar> rest, stiffness, damping, normal, length;
     ck_BulletLinks view();
 };
 

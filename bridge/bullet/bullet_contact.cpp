@@ -1,5 +1,7 @@
 #include "bullet_contact.hpp"
 
+#include "collider.h"
+
 double ck_bullet_margin(const ck_Model *model) {
     double margin = 0.1 * model->spacing;
     for (int i = 0; i < model->collider_count; i++)
@@ -75,6 +77,11 @@ void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletB
 
 void ck_BulletColliders::remove(btDiscreteDynamicsWorld &world) {
     for (auto &body : bodies) world.removeRigidBody(body.get());
+}
+
+double ck_bullet_gap(const ck_Collider &collider, const btVector3 &point, double normal[3]) {
+    const double at[3] = {point[0], point[1], point[2]};
+    return ck_collider_gap(&collider, at, normal);
 }
 
 btVector3 ck_bullet_field(const ck_BulletBody &body, int particle) {

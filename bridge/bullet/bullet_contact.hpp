@@ -30,6 +30,9 @@ class ck_BulletColliders {
 // How thick a soft body is to Bullet, m: a tenth of what it is made of and of what it touches.
 double ck_bullet_margin(const ck_Model *model);
 
+// ck_collider_gap of a point of Bullet's.
+double ck_bullet_gap(const ck_Collider &collider, const btVector3 &point, double normal[3]);
+
 // The field's acceleration of a node, m/s².
 btVector3 ck_bullet_field(const ck_BulletBody &body, int particle);
 

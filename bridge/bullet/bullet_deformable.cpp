@@ -40,7 +40,8 @@ class World : public btDeformableMultiBodyDynamicsWorld {
         btDeformableMultiBodyDynamicsWorld::predictUnconstraintMotion(dt);
         // Bullet has just scaled back what is faster than the bounds that it took then
         const btSoftBody &soft = *body->soft;
-        double most = (soft.m_bounds[1] - soft.m_bounds[0]).length2() / (dt * dt) * (1 - 1e-9);
+        double most =
+            (soft.m_bounds[1] - soft.m_bounds[0]).length2() / (dt * dt) * (1 - btMax(1e-9, 16.0 * SIMD_EPSILON));
         for (int i = 0; i < soft.m_nodes.size() && !is_implicit && !was_clamped; i++)
             was_clamped = soft.m_nodes[i].m_v.length2() >= most;
     }
@@ -68,7 +69,7 @@ void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btSca
     const ck_Collider &collider = ck_BulletColliders::of(body->model, contact.m_cti.m_colObj);
     if (!(collider.restitution > 0)) return;
     btSoftBody::Node &node = *contact.m_node;
-    double out[3], gap = ck_collider_gap(&collider, &node.m_q[0], out);
+    double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
     btVector3 normal(out[0], out[1], out[2]);
     double pull = -ck_bullet_field(*body, body->particle_of_node[node.index]).dot(normal);
     double speed = -speed_before[node.index].dot(normal);
@@ -128,7 +129,7 @@ ck_Status time_step_limit(const ck_Model *model, bool is_implicit, double *limit
     ck_Status status = is_implicit ? CK_OK : ck_stability_frequency(model, &frequency);
     if (frequency > 0) *limit = btMin(*limit, 1 / frequency);
     double rate = ck_stability_stiffness_rate(model);
-    if (model->collider_count && rate > 0) *limit = btMin(*limit, btSqrt(2 / rate));
+    if (model->collider_count && rate > 0) *limit = std::fmin(*limit, std::sqrt(2 / rate));
     return status;
 }
 
@@ -145,7 +146,7 @@ void ledger_speed(const ck_Model *model, const ck_Settings &used, ck_Ledger *led
         const double *at = model->position + 3 * i, *speed = model->velocity + 3 * i;
         low.setMin(btVector3(at[0], at[1], at[2]));
         high.setMax(btVector3(at[0], at[1], at[2]));
-        fastest = btMax(fastest, btVector3(speed[0], speed[1], speed[2]).length());
+        fastest = std::fmax(fastest, btVector3(speed[0], speed[1], speed[2]).length());
     }
     double limit = (high - low + btVector3(2, 2, 2) * margin).length() * used.substeps / model->step;
     // what it can reach: a fall as long as the scene or, held by pins, as deep as the body
@@ -343,13 +344,14 @@ const ck_Setting explicit_settings[] = {
 } // namespace
 
 extern "C" const ck_Engine ck_bullet_implicit = {
-    .name = "bullet-implicit",
+    .name = "bullet-implicit" CK_BULLET_SUFFIX,
     .about = "deformable world: backward Euler, one Newton iteration, conjugate gradient",
     .family = "Bullet",
     .version = ck_bullet_version,
     .method = CK_METHOD_IMPLICIT_EULER,
     .terms = terms,
     .settings = implicit_settings,
+    .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,
     .rest_order = 0,
     .damped_rest_order = 0,
@@ -364,13 +366,14 @@ extern "C" const ck_Engine ck_bullet_implicit = {
 };
 
 extern "C" const ck_Engine ck_bullet_explicit = {
-    .name = "bullet-explicit",
+    .name = "bullet-explicit" CK_BULLET_SUFFIX,
     .about = "deformable world: symplectic Euler, damping implicit",
     .family = "Bullet",
     .version = ck_bullet_version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = terms,
     .settings = explicit_settings,
+    .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,
     .rest_order = 0,
     .damped_rest_order = 0,

@@ -22,6 +22,15 @@ template <typename Work> ck_Status ck_bullet_guarded(ck_Error *error, Work work)
     }
 }
 
+// The engines are built a second time for Bullet in single precision, by other names.
+#ifdef CK_BULLET_FLOAT
+#define CK_BULLET_SUFFIX "-float"
+#define CK_BULLET_IS_SINGLE true
+#else
+#define CK_BULLET_SUFFIX ""
+#define CK_BULLET_IS_SINGLE false
+#endif
+
 // Of the library and its precision, as "3.24 double".
 inline const char *ck_bullet_version(void) {
     static char text[24];

@@ -70,8 +70,8 @@ struct Classic {
     bool corrects;                          // to Hooke's law: springs, whose share is not the user's own
     uint32_t substep;                       // since the start
     uint32_t apart;                         // substeps from one damping force to the next
-    std::vector<double> of_one, least;      // of each link of the table: (w_a + w_b)/κ, and κ
-    std::vector<int> slot;                  // where its m_c0 is, in doubles from the first link's
+    std::vector<btScalar> of_one, least;    // of each link of the table: (w_a + w_b)/κ, and κ
+    std::vector<int> slot;                  // where its m_c0 is, in numbers from the first link's
     btVector3 field_force;                  // N on each node
     std::vector<Landing> landings;          // of this substep
     std::vector<std::vector<int>> links_of; // of each node; empty without colliders
@@ -206,7 +206,7 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
         const ck_Collider &collider = ck_BulletColliders::of(body.model, contact.m_cti.m_colObj);
         const btSoftBody::Node &node = *contact.m_node;
         // Bullet's normals are slopes of a grid, off by a hundredth on a ball whose radius is sixty of its voxels
-        double out[3], gap = ck_collider_gap(&collider, &node.m_q[0], out);
+        double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
         const btVector3 normal(out[0], out[1], out[2]);
         contact.m_cti.m_normal = normal;
         auto index = contact.m_node - &body.soft->m_nodes[0];
@@ -275,7 +275,7 @@ std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
         double weight = spring_weight(model, spring), share = kappa(spring, weight, state->body.dt, used);
         state->of_one.push_back(weight / share);
         state->least.push_back(share);
-        state->slot.push_back(link * static_cast<int>(sizeof(btSoftBody::Link) / sizeof(double)));
+        state->slot.push_back(link * static_cast<int>(sizeof(btSoftBody::Link) / sizeof(btScalar)));
         soft.m_links[link].m_c0 = weight / share;
     }
     state->field_force = btVector3(model->force[0], model->force[1], model->force[2]);
@@ -429,7 +429,7 @@ const ck_Setting settings[] = {
 } // namespace
 
 extern "C" const ck_Engine ck_bullet_pbd = {
-    .name = "bullet-pbd",
+    .name = "bullet-pbd" CK_BULLET_SUFFIX,
     .about = "classic btSoftBody: position-based links, Hooke correction, static stiffness map",
     .family = "Bullet",
     .version = ck_bullet_version,
@@ -437,6 +437,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
              CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
     .settings = settings,
+    .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,
     .rest_order = 2,
     .damped_rest_order = 2,

@@ -31,7 +31,7 @@ class ck_BulletSprings : public btDeformableLagrangianForce {
     const ck_BulletLoops *loops;
     bool is_implicit, is_damped, has_force;
     // what multiply answers with, of each link and node, for the scales it was made for; stale once normals are new
-    std::vector<double> along, across, own;
+    std::vector<btScalar> along, across, own;
     btScalar made_for[2];
     bool is_stale;
     btScalar damping_scale_before; // of the first of two calls that are answered together

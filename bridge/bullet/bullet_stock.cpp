@@ -268,7 +268,7 @@ const ck_Setting settings[] = {
 } // namespace
 
 extern "C" const ck_Engine ck_bullet_stock = {
-    .name = sizeof(btScalar) == sizeof(double) ? "bullet-stock" : "bullet-stock-float",
+    .name = "bullet-stock" CK_BULLET_SUFFIX,
     .about = "classic btSoftBody as its demos use it: stepSimulation, nothing corrected",
     .family = "Bullet",
     .version = ck_bullet_version,
@@ -276,7 +276,7 @@ extern "C" const ck_Engine ck_bullet_stock = {
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_DRAG | CK_TERM_VELOCITY |
              CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
     .settings = settings,
-    .is_single = sizeof(btScalar) == sizeof(float),
+    .is_single = CK_BULLET_IS_SINGLE,
     .is_stock = true,
     .create = create,
     .step = step,

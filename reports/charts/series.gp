@@ -24,7 +24,8 @@ do for [i = 1:count] {
 room = 0.25*(highest - lowest)
 lowest = least > lowest - room ? least : lowest - room
 highest = most < highest + room ? most : highest + room
-margin = 0.03*(highest - lowest) + 1e-12
+# what differs by rounding alone is a line
+margin = 0.03*(highest - lowest) + 1e-6*(abs(highest) > abs(lowest) ? abs(highest) : abs(lowest)) + 1e-12
 set yrange [lowest - margin:highest + margin]
 
 plot for [engine in present] data using (only(engine, column(2))):3 skip 1 with lines linetype place(engine) notitle, \

@@ -50,15 +50,15 @@ bool ck_path_data(char *out, size_t size) {
     return !access(out, R_OK | X_OK);
 }
 
-bool ck_path_adapter(char *out, size_t size, const char *name) {
+bool ck_path_adapters(char *out, size_t size) {
     static const char *const places[] = {"adapters", "../libexec/clothcheck/adapters"};
     char program[4096];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     program[length > 0 ? length : 0] = 0;
     if (strrchr(program, '/')) *strrchr(program, '/') = 0;
-    for (size_t i = 0; i < sizeof places / sizeof *places && !strchr(name, '/'); i++) {
-        snprintf(out, size, "%s/%s/%s", program, places[i], name);
-        if (*name && *name != '.' && !access(out, X_OK)) return true;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        snprintf(out, size, "%s/%s", program, places[i]);
+        if (!access(out, R_OK | X_OK)) return true;
     }
     return false;
 }

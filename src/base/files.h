@@ -28,9 +28,9 @@ int ck_path_make(const char *directory);
 // is installed in, else its source tree. False where there is none.
 bool ck_path_data(char *out, size_t size);
 
-// The program of a name among those that came with this one and are talked to: adapters/NAME beside it, or
-// libexec/clothcheck/adapters/NAME where it is installed. False where there is none.
-bool ck_path_adapter(char *out, size_t size, const char *name);
+// The directory of programs that came with this one and are talked to: adapters/ beside it, or
+// libexec/clothcheck/adapters where it is installed. False where there is none.
+bool ck_path_adapters(char *out, size_t size);
 
 // What tells two inputs apart.
 

@@ -1,11 +1,9 @@
+#include "asked_engines.h"
 #include "command.h"
 
-#include "files.h"
 #include "names.h"
-#include "outside.h"
 
 #include <errno.h>
-#include <fnmatch.h>
 #include <getopt.h>
 #include <math.h>
 #include <stddef.h>
@@ -29,7 +27,6 @@ typedef struct Option {
     bool is_way; // it says how to come to the answer, not what is asked
 } Option;
 
-static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_full(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error *error);
@@ -47,7 +44,7 @@ static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Er
 // Adding an option is one row here, and a member of ck_Arguments.
 static const Option table[] = {
     {"out", "DIR", 'o', CK_TAKES_OUT, TEXT, PLACE(out), .help = "write the CSVs into DIR", .is_way = true},
-    {"engine", "NAME", 'e', CK_TAKES_RUNS, OTHER, .fallback = "all", .read = add_engines,
+    {"engine", "NAME", 'e', CK_TAKES_RUNS, OTHER, .fallback = "all", .read = ck_arguments_add_engines,
      .help = "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
              "--fast', or a library as ./libmine.so; may be given several times"},
     {"set", "ENGINE.KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
@@ -180,69 +177,6 @@ static ck_Status read_count(double *number, const char *text, double low, double
     return ck_fail(error, CK_BAD_INPUT, "%s %s: it must be a whole number from %g to %.16g", option, text, low, high);
 }
 
-static ck_Status fail_engine(const char *name, ck_Error *error) {
-    char known[400], hint[80];
-    return ck_fail(error, CK_BAD_INPUT, "there is no engine %s%s; known are %s", name,
-                   ck_name_hint(hint, sizeof hint, name, ck_engine_name, NULL),
-                   ck_name_list(known, sizeof known, ck_engine_name, NULL));
-}
-
-static void add_engine(ck_Arguments *arguments, const ck_Engine *engine) {
-    ck_CompareOptions *options = &arguments->options;
-    if (options->engines != arguments->engines) options->engine_count = 0;
-    options->engines = arguments->engines;
-    for (int i = 0; i < options->engine_count; i++)
-        if (arguments->engines[i] == engine) return;
-    arguments->engines[options->engine_count++] = engine;
-}
-
-static bool is_library(const char *text) {
-    size_t length = strlen(text);
-    return length > 3 && !strcmp(text + length - 3, ".so") && !strchr(text, ' ');
-}
-
-// Adds an engine from outside to the table, which keeps it, and to those that are asked for.
-static ck_Status take_outside(ck_Arguments *arguments, ck_Engine *engine, ck_Error *error) {
-    ck_Status status = ck_engines_add(engine, error);
-    if (!status)
-        add_engine(arguments, engine);
-    else
-        ck_outside_free(engine);
-    return status;
-}
-
-// NAME=COMMAND, NAME=LIBRARY.so or LIBRARY.so.
-static ck_Status add_outside(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    char name[64];
-    ck_Engine *engine;
-    const char *equals = strchr(text, '='), *rest = equals ? equals + 1 : text;
-    snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - text) : 0, text);
-    ck_Status status = is_library(rest) ? ck_outside_library(&engine, equals ? name : NULL, rest, error)
-                                        : ck_outside_command(&engine, name, rest, false, error);
-    return status ? status : take_outside(arguments, engine, error);
-}
-
-// One of the programs that came with this one, by its name.
-static ck_Status add_adapter(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    char path[4300], line[4310];
-    ck_Engine *engine;
-    if (!ck_path_adapter(path, sizeof path, text)) return fail_engine(text, error);
-    snprintf(line, sizeof line, "'%s'", path);
-    ck_Status status = ck_outside_command(&engine, text, line, true, error);
-    return status ? status : take_outside(arguments, engine, error);
-}
-
-static ck_Status add_engines(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    if (strchr(text, '=') || is_library(text)) return add_outside(arguments, text, error);
-    int found = 0;
-    for (int i = 0; i < ck_engine_count(); i++)
-        if (!fnmatch(text, ck_engine_at(i)->name, 0)) {
-            add_engine(arguments, ck_engine_at(i));
-            found++;
-        }
-    return found ? CK_OK : add_adapter(arguments, text, error);
-}
-
 static ck_Status fail_unknown_key(const char *text, const char *key, const ck_Engine *engine, ck_Error *error) {
     char known[200], hint[80];
     return ck_fail(error, CK_BAD_INPUT, "--set %s: %s has no %s%s; it has %s", text, engine->name, key,
@@ -262,7 +196,7 @@ static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Erro
         return ck_fail(error, CK_BAD_INPUT, "--set is given more than %d times", options->override_count);
     ck_Override *override = &arguments->overrides[options->override_count++];
     *override = (ck_Override){.engine = ck_engine_find(name)};
-    if (!override->engine) return fail_engine(name, error);
+    if (!override->engine) return ck_engine_unknown(name, error);
     const ck_Setting *setting = ck_setting_find(override->engine->settings, key);
     if (!setting) return fail_unknown_key(text, key, override->engine, error);
     double number = strtod(text + used, &end);

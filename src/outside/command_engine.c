@@ -4,6 +4,7 @@
 #include "outside_words.h"
 #include "process.h"
 #include "talk.h"
+#include "text_pool.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,7 +25,7 @@ typedef struct SettingText {
 
 // What a command says of itself; in memory that is shared with the process that asks.
 typedef struct Hello {
-    char version[80];
+    char version[80], about[160];
     unsigned terms;
     SettingText settings[MOST_SETTINGS];
     int setting_count;
@@ -34,6 +35,7 @@ typedef struct Hello {
 typedef struct Command {
     char *line; // as a shell reads it
     Hello hello;
+    ck_TextPool *pool;
     ck_Setting settings[MOST_SETTINGS + 1];
 } Command;
 
@@ -87,6 +89,8 @@ static void ask_hello(void *context) {
         if (!strcmp(line, "end")) break;
         if (!strncmp(line, "version ", 8))
             snprintf(hello->version, sizeof hello->version, "%.79s", line + 8);
+        else if (!strncmp(line, "about ", 6))
+            snprintf(hello->about, sizeof hello->about, "%.159s", line + 6);
         else if (!strncmp(line, "models ", 7))
             take_terms(hello, &talk, line + 7);
         else if (!strncmp(line, "setting ", 8))
@@ -96,7 +100,7 @@ static void ask_hello(void *context) {
         else if (!strcmp(line, "precision single") || !strcmp(line, "precision double"))
             hello->is_single = !strcmp(line, "precision single");
         else
-            ck_talk_refuse(&talk, line, "version, models, setting, positions, precision or end");
+            ck_talk_refuse(&talk, line, "version, about, models, setting, positions, precision or end");
     }
     ck_talk_end(&talk);
 }
@@ -118,9 +122,23 @@ static void send_settings(Session *session, const ck_Settings *wanted) {
             fprintf(session->talk.to, "setting %s %.17g\n", row->name, ck_settings_get(wanted, row->slot));
 }
 
-// Reads what it uses until it is ready. False where it refuses the scene, with the reason.
-static bool take_answer(Session *session, ck_Settings *used, char *reason, size_t size) {
-    char line[400], name[32], wanted[100];
+// A row of its ledger: "ledger exact 1000 N/m 0.5; structural stiffness; kLST; how the one follows from the other".
+static void take_row(Session *session, ck_Ledger *ledger, const char *line) {
+    char match[16], unit[16], quantity[64], parameter[100], formula[300] = "";
+    ck_LedgerRow row = {.quantity = quantity, .unit = unit, .native_parameter = parameter, .formula = formula};
+    int fields = sscanf(line, "ledger %15s %lf %15s %lf ; %63[^;]; %99[^;]; %299[^\n]", match, &row.wanted, unit,
+                        &row.native_value, quantity, parameter, formula);
+    row.match = CK_EXACT;
+    while (row.match <= CK_IMPOSSIBLE && strcmp(match, ck_match_names[row.match])) row.match++;
+    if (fields < 6 || row.match > CK_IMPOSSIBLE)
+        ck_talk_refuse(&session->talk, line,
+                       "ledger exact|approximate|impossible VALUE UNIT VALUE; QUANTITY; PARAMETER; FORMULA");
+    ck_ledger_add(ledger, ck_text_pool_keep_row(session->command->pool, row));
+}
+
+// Reads what it uses and makes of the scene until it is ready. False where it refuses the scene, with the reason.
+static bool take_answer(Session *session, ck_Settings *used, ck_Ledger *ledger, char *reason, size_t size) {
+    char line[600], name[32], wanted[100];
     for (;;) {
         double value;
         ck_talk_line(&session->talk, line, sizeof line);
@@ -129,11 +147,15 @@ static bool take_answer(Session *session, ck_Settings *used, char *reason, size_
             snprintf(reason, size, "%.300s", line + 7);
             return false;
         }
+        if (!strncmp(line, "ledger ", 7)) {
+            take_row(session, ledger, line);
+            continue;
+        }
         const ck_Setting *setting = NULL;
         if (sscanf(line, "uses %31s %lf", name, &value) == 2)
             setting = ck_setting_find(session->command->settings, name);
         if (!setting || !ck_setting_takes(setting, value, wanted, sizeof wanted))
-            ck_talk_refuse(&session->talk, line, "uses SETTING VALUE, ready or refuse REASON");
+            ck_talk_refuse(&session->talk, line, "uses SETTING VALUE, ledger ROW, ready or refuse REASON");
         ck_settings_set(used, setting->slot, value);
     }
 }
@@ -165,7 +187,8 @@ static ck_Status open_command(const void *source, void **state, const ck_Model *
     send_settings(session, wanted);
     fprintf(session->talk.to, "end\n");
     char reason[310];
-    if (!take_answer(session, used, reason, sizeof reason)) {
+    ck_text_pool_clear(session->command->pool);
+    if (!take_answer(session, used, ledger, reason, sizeof reason)) {
         end_session(session);
         return ck_fail(error, CK_REFUSED, "%s", reason);
     }
@@ -219,6 +242,7 @@ static double cpu(const void *state) {
 static void free_command(void *source) {
     Command *command = source;
     free(command->line);
+    ck_text_pool_free(command->pool);
     free(command);
 }
 
@@ -266,8 +290,12 @@ ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *l
     *engine = NULL;
     ck_OutsideEngine *made = ck_outside_new(name);
     Command *command = calloc(1, sizeof *command);
-    if (command) command->line = strdup(line);
-    ck_Status status = made && command && command->line ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (command) {
+        command->line = strdup(line);
+        command->pool = ck_text_pool_new();
+    }
+    ck_Status status =
+        made && command && command->line && command->pool ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ask(command, name, error);
     if (status) {
         if (command) free_command(command);
@@ -277,7 +305,10 @@ ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *l
     make_settings(command);
     made->source = command;
     made->free_source = free_command;
-    snprintf(made->about, sizeof made->about, "a command: %.140s", line);
+    if (*command->hello.about)
+        snprintf(made->about, sizeof made->about, "%s", command->hello.about);
+    else
+        snprintf(made->about, sizeof made->about, "a command: %.140s", line);
     snprintf(made->version, sizeof made->version, "%s", command->hello.version);
     if (is_known)
         snprintf(made->arguments, sizeof made->arguments, "--engine %s", name);

@@ -2,6 +2,7 @@
 #include "outside_engine.h"
 #include "plugin.h"
 #include "process.h"
+#include "text_pool.h"
 
 #include <dlfcn.h>
 #include <limits.h>
@@ -13,14 +14,6 @@
 
 #define LOAD_SECONDS 10
 #define MOST_SETTINGS (CK_OWN + CK_OWN_SETTINGS)
-// Of the texts of a ledger and a remark, bytes.
-#define POOL 16384
-
-// A library's texts end with its process: what is told of them goes through memory that is shared.
-typedef struct Pool {
-    size_t used;
-    char text[POOL];
-} Pool;
 
 typedef struct SettingTexts {
     char name[32], also[32], unit[16], rule[100], help[120];
@@ -40,7 +33,7 @@ typedef struct Library {
     char path[PATH_MAX];
     Profile profile;
     ck_Setting settings[MOST_SETTINGS + 1];
-    Pool *pool;
+    ck_TextPool *pool;
 } Library;
 
 typedef struct Loaded {
@@ -101,22 +94,6 @@ static void look_at(void *context) {
     take_settings(profile, engine->settings);
 }
 
-static const char *keep(Pool *pool, const char *text) {
-    size_t length = text ? strlen(text) + 1 : 0;
-    if (!length || pool->used + length > sizeof pool->text) return "";
-    char *kept = memcpy(pool->text + pool->used, text, length);
-    pool->used += length;
-    return kept;
-}
-
-static void keep_ledger(Pool *pool, ck_Ledger *ledger) {
-    for (int i = 0; ledger && i < ledger->count; i++) {
-        ck_LedgerRow *row = &ledger->rows[i];
-        const char **texts[] = {&row->quantity, &row->unit, &row->native_parameter, &row->formula};
-        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) *texts[k] = keep(pool, *texts[k]);
-    }
-}
-
 static ck_Status open_library(const void *source, void **state, const ck_Model *model, const ck_Settings *wanted,
                               ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
     const Library *library = source;
@@ -131,8 +108,9 @@ static ck_Status open_library(const void *source, void **state, const ck_Model *
         free(loaded);
         return status;
     }
-    library->pool->used = 0;
-    keep_ledger(library->pool, ledger);
+    ck_text_pool_clear(library->pool);
+    for (int i = 0; ledger && i < ledger->count; i++)
+        ledger->rows[i] = ck_text_pool_keep_row(library->pool, ledger->rows[i]);
     *state = loaded;
     return CK_OK;
 }
@@ -160,7 +138,7 @@ static void contact(const void *state, double *force) {
 static const char *remark(const void *state) {
     const Loaded *loaded = state;
     const char *text = loaded->engine->remark(loaded->state);
-    return text ? keep(loaded->library->pool, text) : NULL;
+    return text ? ck_text_pool_keep(loaded->library->pool, text) : NULL;
 }
 
 // The library stays loaded: its process is about to end, and some do not like to be taken out.
@@ -172,7 +150,7 @@ static void destroy(void *state) {
 
 static void free_library(void *source) {
     Library *library = source;
-    ck_shared_free(library->pool, sizeof *library->pool);
+    ck_text_pool_free(library->pool);
     free(library);
 }
 
@@ -228,7 +206,7 @@ static void make_engine(ck_OutsideEngine *made, Library *library) {
 ck_Status ck_outside_library(ck_Engine **engine, const char *name, const char *path, ck_Error *error) {
     *engine = NULL;
     Library *library = calloc(1, sizeof *library);
-    if (library) library->pool = ck_shared_allocate(sizeof *library->pool);
+    if (library) library->pool = ck_text_pool_new();
     ck_Status status = library && library->pool ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status && !realpath(path, library->path))
         status = ck_fail(error, CK_BAD_INPUT, "%s: there is no such library", path);

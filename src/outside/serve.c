@@ -167,29 +167,42 @@ static void read_scene(Server *server) {
     model->terms = terms_of(model);
 }
 
+static void tell_row(const ck_LedgerRow *row) {
+    printf("ledger %s %.17g %s %.17g; %s; %s; %.280s\n", ck_match_names[row->match], row->wanted, row->unit,
+           row->native_value, row->quantity, row->native_parameter, row->formula);
+}
+
+// Studies vary the number of iterations by that name.
+static const char *name_of(const ck_Setting *row) {
+    return row->slot == CK_ITERATIONS ? "iterations" : row->name;
+}
+
 static void begin(Server *server) {
     ck_Error error = {0};
     ck_Settings used = {0};
+    ck_Ledger ledger = {.count = 0};
     read_scene(server);
     const ck_Engine *engine = server->engine;
-    ck_Status status = engine->create(&server->world, &server->model, &server->wanted, &used, NULL, &error);
+    ck_Status status = engine->create(&server->world, &server->model, &server->wanted, &used, &ledger, &error);
     if (status) {
         printf("refuse %s\n", error.message);
         return;
     }
     for (const ck_Setting *row = engine->settings; row && row->name; row++)
-        if (ck_settings_has(&used, row->slot)) printf("uses %s %.17g\n", row->name, ck_settings_get(&used, row->slot));
+        if (ck_settings_has(&used, row->slot))
+            printf("uses %s %.17g\n", name_of(row), ck_settings_get(&used, row->slot));
+    for (int i = 0; i < ledger.count; i++) tell_row(&ledger.rows[i]);
     printf("ready\n");
 }
 
 static void say_hello(const ck_Engine *engine) {
-    printf("version %s\nmodels", engine->version());
+    printf("version %s %s\nabout %.150s\nmodels", engine->family, engine->version(), engine->about);
     for (int term = 0; term < CK_TERM_COUNT; term++)
         if (engine->terms & (1u << term)) printf(" %s", ck_term_words[term]);
     printf("\npositions raw\nprecision %s\n", engine->is_single ? "single" : "double");
     for (const ck_Setting *row = engine->settings; row && row->name; row++)
-        printf("setting %s %.17g %.17g %s %.90s\n", row->name, row->least, row->most, row->is_whole ? "whole" : "real",
-               row->help);
+        printf("setting %s %.17g %.17g %s %.90s\n", name_of(row), row->least, row->most,
+               row->is_whole ? "whole" : "real", row->help);
     printf("end\n");
 }
 

@@ -1,5 +1,7 @@
+#include "asked_engines.h"
 #include "command.h"
 #include "names.h"
+#include "outside.h"
 #include "seed.h"
 
 #include <stdio.h>
@@ -28,13 +30,33 @@ static void list_quirks(const char *engine, const char *const *names, int count)
     for (int i = 0; i < count; i++) printf("  %-16d %s\n", 1 << i, names[i]);
 }
 
-static void list_all(void) {
+static bool list_adapter(void *context, const char *name, const char *path) {
+    ck_Engine *engine;
+    ck_Error error = {0};
+    if (ck_adapter_open(&engine, name, path, &error))
+        printf("  %-21s %s\n", name, error.message);
+    else
+        printf("  %-21s %s (%s)\n", name, engine->about, ck_engine_version(engine));
+    ck_outside_free(engine);
+    *(bool *)context = *(bool *)context || !strcmp(name, "jolt");
+    return true;
+}
+
+static void list_engines(void) {
+    bool has_jolt = false;
     printf("Engines ('clothcheck list ENGINE' tells its settings):\n");
-    if (!ck_engine_find("mujoco"))
-        printf("  %-16s not here: this program was built without MuJoCo (Debian's libmujoco-dev)\n", "mujoco");
     for (int i = 0; i < ck_engine_count(); i++)
-        printf("  %-16s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
+        printf("  %-21s %s (%s %s)\n", ck_engine_at(i)->name, ck_engine_at(i)->about, ck_engine_at(i)->family,
                ck_engine_version(ck_engine_at(i)));
+    printf("\nEngines in processes of their own, which run where --engine names them:\n");
+    ck_adapters_visit("*", list_adapter, &has_jolt);
+    if (!has_jolt) printf("  %-21s not here: bridge/fetch jolt brings it with npm\n", "jolt");
+    if (!ck_engine_find("mujoco"))
+        printf("  %-21s not here: this program was built without MuJoCo (Debian's libmujoco-dev)\n", "mujoco");
+}
+
+static void list_all(void) {
+    list_engines();
     list_quirks("seed-tecido", ck_tecido_quirk_names, CK_TECIDO_QUIRK_COUNT);
     list_quirks("seed-cloth", ck_cloth_quirk_names, CK_CLOTH_QUIRK_COUNT);
     printf("\nMetrics:\n");
@@ -45,12 +67,7 @@ static void list_all(void) {
     list_scenes();
 }
 
-static ck_Status list_engine(const char *name, ck_Error *error) {
-    char hint[80];
-    const ck_Engine *engine = ck_engine_find(name);
-    if (!engine)
-        return ck_fail(error, CK_BAD_INPUT, "there is no engine %s%s; 'clothcheck list' tells them", name,
-                       ck_name_hint(hint, sizeof hint, name, ck_engine_name, NULL));
+static void list_engine(const ck_Engine *engine) {
     printf("%s: %s (%s %s)\n\nIt models ", engine->name, engine->about, engine->family, ck_engine_version(engine));
     const char *separator = "";
     for (int bit = 0; bit < CK_TERM_COUNT; bit++)
@@ -64,7 +81,6 @@ static ck_Status list_engine(const char *name, ck_Error *error) {
         printf("%s%s (default: %s)%s%s\n", strcmp(row->unit, "1") ? " " : "", strcmp(row->unit, "1") ? row->unit : "",
                row->rule, row->also ? "; also called " : "", row->also ? row->also : "");
     }
-    return CK_OK;
 }
 
 static int run(const ck_Command *command, int argc, char **argv) {
@@ -72,7 +88,14 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status && !arguments.word_count) list_all();
-    for (int i = 0; i < arguments.word_count && !status; i++) status = list_engine(arguments.words[i], &error);
+    for (int i = 0; i < arguments.word_count && !status; i++) {
+        arguments.options.engine_count = 0;
+        status = ck_arguments_add_engines(&arguments, arguments.words[i], &error);
+        for (int k = 0; k < arguments.options.engine_count && !status; k++) {
+            if (i || k) printf("\n");
+            list_engine(arguments.options.engines[k]);
+        }
+    }
     ck_arguments_free(&arguments);
     return status ? ck_command_fail(status, &error) : CK_EXIT_OK;
 }
