@@ -40,7 +40,7 @@ static void test_usage(void **state) {
         {"run --help", 0, "--engine NAME"},
         {"compare --help", 0, "--time-limit S"},
         {"list", 0, "native-verlet"},
-        {"list all", 2, "there is no engine all; 'clothcheck list' tells them"},
+        {"list all", 2, "there is no engine all; known are native-verlet"},
         {"list bullet-pbd", 0, "kLST         Material::m_kLST of every link, as it is; 1e-09 to 1"},
         {"list ode-quick", 0, "dWorldSetQuickStepW"},
         {"help --manual", 0, ".SS clothcheck run SCENE"},
