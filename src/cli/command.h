@@ -29,7 +29,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_FIT = 2048,
     CK_TAKES_FORM = 4096, // --json, --markdown
     CK_TAKES_RECORDING = 8192,
-    CK_TAKES_FORMAT = 16384
+    CK_TAKES_FORMAT = 16384,
+    CK_TAKES_SPRING = 32768
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -48,7 +49,7 @@ struct ck_Command {
 extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_command_run, ck_command_compare,
     ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge,
     ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score, ck_command_export,
-    ck_command_conform, ck_command_diff, ck_command_new_engine;
+    ck_command_conform, ck_command_diff, ck_command_new_engine, ck_command_means;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -67,16 +68,17 @@ typedef struct ck_Arguments {
     bool by_engine;           // results of one engine of a scene stand for themselves
     int shard, shards;
     bool runs_nothing;
-    bool appends, forces;  // into a directory that holds other results: keeps them, replaces them
-    int rounds, largest;   // of bench
-    char question[2048];   // what is asked, without the scene, where to and how fast; words between tabs
-    double error;          // a tolerance; NAN: none
-    double stretch;        // a bound of strain; NAN: none
-    double frame;          // ms of CPU a frame of 1/60 s; NAN: any
-    double timeout;        // s of a search; 0: any
-    const char *like;      // an engine or a file; NULL: none
-    const char *target;    // METRIC=VALUE; NULL: none
-    const char *varies[4]; // of --vary
+    bool appends, forces;                 // into a directory that holds other results: keeps them, replaces them
+    int rounds, largest;                  // of bench
+    double fps, mass, stiffness, damping; // of means: frames a second, kg, N/m, N*s/m
+    char question[2048];                  // what is asked, without the scene, where to and how fast; words between tabs
+    double error;                         // a tolerance; NAN: none
+    double stretch;                       // a bound of strain; NAN: none
+    double frame;                         // ms of CPU a frame of 1/60 s; NAN: any
+    double timeout;                       // s of a search; 0: any
+    const char *like;                     // an engine or a file; NULL: none
+    const char *target;                   // METRIC=VALUE; NULL: none
+    const char *varies[4];                // of --vary
     int vary_count;
     char *words[128]; // of a command without scenes
     int word_count;

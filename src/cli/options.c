@@ -47,7 +47,7 @@ static const Option table[] = {
     {"engine", "NAME", 'e', CK_TAKES_RUNS, OTHER, .fallback = "all", .read = ck_arguments_add_engines,
      .help = "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
              "--fast', or a library as ./libmine.so; may be given several times"},
-    {"set", "ENGINE.KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
+    {"set", "[ENGINE.]KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
      .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
     {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,
      .help = "threads a step, where an engine can share one: regular cloths"},
@@ -122,6 +122,13 @@ static const Option table[] = {
     {"json", NULL, 0, CK_TAKES_FORM, OTHER, .read = set_json, .is_way = true, .help = "the answer as JSON"},
     {"markdown", NULL, 0, CK_TAKES_FORM, OTHER, .read = set_markdown, .is_way = true,
      .help = "the answer as Markdown, as for a pull request"},
+    {"fps", "N", 0, CK_TAKES_SPRING, NUMBER, PLACE(fps), 1e-3, 1e6, .fallback = "60", .help = "frames a second"},
+    {"mass", "KG", 0, CK_TAKES_SPRING, NUMBER, PLACE(mass), 1e-12, 1e9, .fallback = "0.05",
+     .help = "mass of each particle"},
+    {"stiffness", "N/M", 0, CK_TAKES_SPRING, NUMBER, PLACE(stiffness), 1e-9, 1e15, .fallback = "1000",
+     .help = "of the spring, where no setting stands for it"},
+    {"damping", "N*S/M", 0, CK_TAKES_SPRING, NUMBER, PLACE(damping), 0, 1e12, .fallback = "0",
+     .help = "of the spring, where no setting stands for it"},
     {"rounds", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(rounds), 1, 99, .fallback = "7", .help = "repeats, 1 to 99"},
     {"largest", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(largest), 16, 2048, .fallback = "1024",
      .help = "side of the largest cloth, 16 to 2048"},
@@ -189,8 +196,14 @@ static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Erro
     char name[64], key[32], wanted[100], *end;
     int used = 0;
     ck_CompareOptions *options = &arguments->options;
-    if (sscanf(text, "%63[^.=].%31[^.=]=%n", name, key, &used) != 2 || !used)
-        return ck_fail(error, CK_BAD_INPUT, "--set %s: it must read ENGINE.KEY=NUMBER, as in ode-quick.substeps=16",
+    // the engine goes without saying where one is asked for
+    if (options->engines == arguments->engines && options->engine_count == 1 &&
+        sscanf(text, "%31[^.=]=%n", key, &used) == 1 && used)
+        snprintf(name, sizeof name, "%s", arguments->engines[0]->name);
+    else if (sscanf(text, "%63[^.=].%31[^.=]=%n", name, key, &used) != 2 || !used)
+        return ck_fail(error, CK_BAD_INPUT,
+                       "--set %s: it must read ENGINE.KEY=NUMBER, as in ode-quick.substeps=16, or KEY=NUMBER after one "
+                       "--engine",
                        text);
     if (options->override_count == sizeof arguments->overrides / sizeof *arguments->overrides)
         return ck_fail(error, CK_BAD_INPUT, "--set is given more than %d times", options->override_count);
@@ -382,6 +395,9 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
                                 .timeout = 60,
                                 .uncertainty = 0.0003,
                                 .frame_cost = NAN,
+                                .fps = 60,
+                                .mass = 0.05,
+                                .stiffness = 1000,
                                 .rounds = 7,
                                 .largest = 1024,
                                 .baseline = CK_BASELINE_PATH,

@@ -3,10 +3,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 const ck_Setting *ck_setting_find(const ck_Setting *table, const char *name) {
     for (const ck_Setting *row = table; row && row->name; row++)
-        if (!strcmp(row->name, name) || (row->also && !strcmp(row->also, name))) return row;
+        if (!strcasecmp(row->name, name) || (row->also && !strcasecmp(row->also, name))) return row;
     return NULL;
 }
 
