@@ -27,7 +27,7 @@ async function startDownloads() {
 
 async function startPage() {
 	const replay = new Replay();
-	const parts = [startMachine, startAnswer, () => startSummary((scene) => showScene(scene, replay)), startFailures, startConform, startHistory,
+	const parts = [startMachine, startAnswer, startFindings, () => startSummary((scene) => showScene(scene, replay)), startFailures, startConform, startHistory,
 		startDownloads, () => startScene(replay), startGeneral];
 	for (const part of parts) await part().catch(showTrouble);
 	document.body.dataset.ready = "yes";

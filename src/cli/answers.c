@@ -1,6 +1,7 @@
 // What a command's result comes to, in a few lines on the terminal.
 #include "command.h"
 #include "csv_reader.h"
+#include "finding.h"
 
 #include <fnmatch.h>
 #include <math.h>
@@ -196,15 +197,12 @@ static void add_precision(ck_Answer *answer, const ck_CsvTable *table, const ck_
     }
 }
 
-// Who is the cheapest within 1 %, and whom finer steps make worse.
+// Who is the cheapest within 1 %.
 static void say_precision(ck_Arguments *arguments, const ck_CsvTable *summary, const char *scene) {
     ck_Answer *answer = &arguments->answer;
     int best = -1;
     for (int i = 0; i < summary->row_count; i++) {
         if (strcmp(text(summary, i, "scene"), scene)) continue;
-        if (!strcmp(text(summary, i, "quantity"), "finest_useful_substeps"))
-            ck_answer_line(answer, CK_ANSWER_NOTE, "%s, from %s substeps on: %s", text(summary, i, "engine"),
-                           text(summary, i, "value"), text(summary, i, "reason"));
         if (!strcmp(text(summary, i, "quantity"), "cost_to_1_percent") &&
             is_ranked(arguments, text(summary, i, "engine")) && !isnan(number(summary, i, "value")) &&
             (best < 0 || number(summary, i, "value") < number(summary, best, "value")))
@@ -227,6 +225,7 @@ ck_Status ck_answer_precision(ck_Arguments *arguments, const char *scene, ck_Err
     if (!status) status = ck_csv_table_read(&summary, arguments->out, &ck_layouts[CK_PRECISION_SUMMARY], error);
     if (!status) add_precision(&arguments->answer, &table, &summary, scene);
     if (!status) say_precision(arguments, &summary, scene);
+    if (!status) status = ck_answer_findings(arguments, scene, error);
     ck_csv_table_free(&table);
     ck_csv_table_free(&summary);
     return status;
@@ -308,6 +307,22 @@ ck_Status ck_answer_needs(ck_Answer *answer, const char *directory, const char *
         if (is_first) add_need(answer, &table, i);
     }
     ck_csv_table_free(&table);
+    return status;
+}
+
+ck_Status ck_answer_findings(ck_Arguments *arguments, const char *scene, ck_Error *error) {
+    enum { MOST = 8 };
+    ck_Findings findings;
+    ck_Status status = ck_findings_read(&findings, arguments->out, error);
+    int shown = 0;
+    for (int i = 0; i < findings.count && !status; i++) {
+        if (scene && strcmp(findings.items[i].scene, scene)) continue;
+        if (shown++ < MOST)
+            ck_answer_line(&arguments->answer, CK_ANSWER_NOTE, "%s: %s", findings.items[i].kind,
+                           findings.items[i].text);
+    }
+    if (shown > MOST) ck_answer_line(&arguments->answer, CK_ANSWER_NEXT, "clothcheck findings %s", arguments->out);
+    ck_findings_free(&findings);
     return status;
 }
 

@@ -49,7 +49,7 @@ struct ck_Command {
 extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_command_run, ck_command_compare,
     ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_merge,
     ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score, ck_command_export,
-    ck_command_conform, ck_command_diff, ck_command_new_engine, ck_command_means;
+    ck_command_conform, ck_command_diff, ck_command_new_engine, ck_command_means, ck_command_findings;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -144,6 +144,10 @@ ck_Show ck_answer_summary;
 
 // Which engine is the cheapest within 1 % of the truth, and which comes next; without those of --rank-without.
 ck_Show ck_answer_cheapest;
+
+// What the CSVs in --out say that a person should know, as many as a screen has room for; of a scene, or NULL: of all.
+// Errors: those of ck_findings_read.
+ck_Status ck_answer_findings(ck_Arguments *arguments, const char *scene, ck_Error *error);
 
 // What a study of a scene came to, of the CSVs in a directory. Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
 ck_Status ck_answer_precision(ck_Arguments *arguments, const char *scene, ck_Error *error);

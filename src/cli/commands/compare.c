@@ -39,6 +39,9 @@ static int run(const ck_Command *command, int argc, char **argv) {
         ck_answer_line(&arguments.answer, CK_ANSWER_NOTE,
                        "sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated "
                        "second (median), ms/frame that of 1/60 s");
+        status = ck_answer_findings(&arguments, NULL, &error);
+    }
+    if (!status) {
         ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s", arguments.out);
         ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments.out);
     }

@@ -3,6 +3,7 @@
 #include "chart.h"
 #include "engines.h"
 #include "files.h"
+#include "finding.h"
 #include "process.h"
 #include "replay_pack.h"
 
@@ -17,14 +18,20 @@ typedef struct Page {
     const ck_ReportData *data;
     const char *sources, *charts;
     const bool *drawn;
+    ck_Findings findings;
     FILE *file;
 } Page;
 
-// Text of a JSON string; names are plain, titles have no control characters.
+// Text of a JSON string, on one line.
 static void write_text(FILE *file, const char *text) {
     fputc('"', file);
     for (const char *letter = text; *letter; letter++)
-        fprintf(file, *letter == '"' || *letter == '\\' ? "\\%c" : *letter == '<' ? "\\u003c" : "%c", *letter);
+        fprintf(file,
+                (unsigned char)*letter < ' '        ? " "
+                : *letter == '"' || *letter == '\\' ? "\\%c"
+                : *letter == '<'                    ? "\\u003c"
+                                                    : "%c",
+                *letter);
     fputc('"', file);
 }
 
@@ -127,6 +134,25 @@ static void write_charts(const Page *page, int scene) {
     fprintf(page->file, "]");
 }
 
+static ck_Status find_results(Page *page, ck_Error *error) {
+    const ck_CsvTable *tables[CK_REPORT_LAYOUTS];
+    for (int i = 0; i < CK_REPORT_LAYOUTS; i++) tables[i] = ck_report_table(page->data, i);
+    return ck_findings_find(&page->findings, tables, error);
+}
+
+static void write_findings(const Page *page) {
+    fprintf(page->file, "\"findings\":[");
+    for (int i = 0; i < page->findings.count; i++) {
+        const ck_Finding *finding = &page->findings.items[i];
+        fprintf(page->file, "%s{\"kind\":\"%s\",\"text\":", i ? "," : "", finding->kind);
+        write_text(page->file, finding->text);
+        fprintf(page->file, ",\"command\":");
+        write_text(page->file, finding->command);
+        fprintf(page->file, "}");
+    }
+    fprintf(page->file, "]");
+}
+
 // What the page is of, for its scripts.
 static void write_contents(const Page *page) {
     const ck_ReportData *data = page->data;
@@ -149,7 +175,9 @@ static void write_contents(const Page *page) {
         write_text(page->file, ck_layouts[i].about);
         fprintf(page->file, "}");
     }
-    fprintf(page->file, "]}</script>\n");
+    fprintf(page->file, "],");
+    write_findings(page);
+    fprintf(page->file, "}</script>\n");
 }
 
 static ck_Status pack_charts(const Page *page, ck_Error *error) {
@@ -219,6 +247,7 @@ ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const ch
     size_t size;
     ck_Status status = source ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_file_read(&template, &size, source, error);
+    if (!status) status = find_results(&page, error);
     if (!status && !(page.file = fopen(path, "w"))) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
     if (!status) status = fill_template(&page, template, error);
     if (page.file) {
@@ -227,6 +256,7 @@ ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const ch
         if (!status && failed) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
         if (status) unlink(path);
     }
+    ck_findings_free(&page.findings);
     free(template);
     free(source);
     return status;
