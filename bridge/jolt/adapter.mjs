@@ -1,11 +1,11 @@
-// Jolt's soft bodies as an engine, through the words of ../README.md: XPBD with one sweep over edges in each of
+// Jolt's soft bodies as an engine, through the words of ../README.md: XPBD with one sweep over edges in each of its
 // "iterations", which are substeps (Jolt's SoftBodyMotionProperties::Update divides its time step by mNumIterations).
 import { readFileSync, writeSync } from 'node:fs';
 import { createInterface } from 'node:readline';
 import initialise from 'jolt-physics/wasm-compat';
 
 const LAYERS = 2; // of objects: 0 does not move, 1 does
-const MOST_ITERATIONS = 50; // of those that it chooses itself
+const MOST_SUBSTEPS = 50; // of those that it chooses itself
 // A substep moves a point by g·h² of gravity: where that is fewer than so many spacings of floats at its place, what
 // is rounded away shows in the sag.
 const LEAST_SPACINGS = 16;
@@ -64,20 +64,20 @@ function addCollider(bodies, { shape, point, normal, radius, restitution, fricti
   bodies.AddBody(bodies.CreateBody(settings).GetID(), jolt.EActivation_DontActivate);
 }
 
-function iterationsFor({ step, gravity, size }) {
+function substepsFor({ step, gravity, size }) {
   const pull = Math.hypot(...gravity);
   const spacing = 2 ** (Math.floor(Math.log2(size)) - 23);
   const longest = pull > 0 ? Math.sqrt((LEAST_SPACINGS * spacing) / pull) : 0;
-  return Math.max(1, Math.min(MOST_ITERATIONS, longest > 0 ? Math.floor(step / longest) : MOST_ITERATIONS));
+  return Math.max(1, Math.min(MOST_SUBSTEPS, longest > 0 ? Math.floor(step / longest) : MOST_SUBSTEPS));
 }
 
 function build(scene) {
   const made = { ...scene, jolt: makeWorld(scene.gravity) };
-  made.substeps = scene.settings.substeps ?? 1;
-  made.iterations = scene.settings.iterations ?? iterationsFor(scene);
+  made.updates = scene.settings.updates ?? 1;
+  made.substeps = scene.settings.substeps ?? substepsFor(scene);
   const settings = new jolt.SoftBodyCreationSettings(
     makeShape(scene.particles, scene.springs), new jolt.RVec3(0, 0, 0), jolt.Quat.prototype.sIdentity(), 1);
-  settings.mNumIterations = made.iterations;
+  settings.mNumIterations = made.substeps;
   settings.mLinearDamping = scene.drag;
   settings.mMaxLinearVelocity = 1e6;
   settings.mFriction = 1;
@@ -96,9 +96,9 @@ function build(scene) {
 }
 
 // What the scene asked, and what Jolt makes of it.
-function ledger({ springs, gravity, force, drag, step, colliders, substeps, iterations }) {
+function ledger({ springs, gravity, force, drag, step, colliders, updates, substeps }) {
   const rows = [
-    ['exact', step, 's', step / substeps / iterations, 'time step', 'mNumIterations', 'step / substeps / iterations'],
+    ['exact', step, 's', step / updates / substeps, 'time step', 'mNumIterations', 'step / updates / substeps'],
     ['exact', Math.hypot(...gravity), 'm/s2', Math.hypot(...gravity), 'gravity', 'SetGravity', 'g'],
   ];
   for (const kind of ['structural', 'shear', 'bend']) {
@@ -126,12 +126,12 @@ function ledger({ springs, gravity, force, drag, step, colliders, substeps, iter
 
 function begin(scene) {
   world = build(scene);
-  return `uses substeps ${world.substeps}\nuses iterations ${world.iterations}\n${ledger(world)}ready\n`;
+  return `uses substeps ${world.substeps}\nuses updates ${world.updates}\n${ledger(world)}ready\n`;
 }
 
 function step() {
   world.body.AddForce(world.push);
-  world.jolt.Step(world.step, world.substeps);
+  world.jolt.Step(world.step, world.updates);
   const { mMin, mMax } = world.motion.GetLocalBounds();
   return [mMin, mMax].every((at) => Number.isFinite(at.GetX() + at.GetY() + at.GetZ())) ? 'ok\n' : 'diverged\n';
 }
@@ -194,8 +194,8 @@ about Jolt's soft body: XPBD, one sweep over compliant edges in each of its iter
 models springs rigid damping gravity force drag velocity plane sphere release
 precision single
 positions raw
-setting substeps 1 10000 whole updates a frame (default: 1)
-setting iterations 1 100000 whole mNumIterations: substeps of an update (default: 50, fewer where floats end)
+setting substeps 1 100000 whole mNumIterations: substeps of an update (default: 50, fewer where floats end)
+setting updates 1 10000 whole collision steps a frame, as PhysicsSystem::Update takes (default: 1)
 end
 `;
 

@@ -60,7 +60,7 @@ static void add(ck_Findings *findings, const char *kind, const char *scene, cons
 }
 
 static bool has_broken_down(const ck_CsvTable *runs, int row) {
-    static const char *const statuses[] = {"diverged", "energy_gain", "crashed"};
+    static const char *const statuses[] = {"diverged", "energy_gain", "overstretched", "aborted"};
     for (size_t i = 0; i < sizeof statuses / sizeof *statuses; i++)
         if (is(runs, row, "status", statuses[i])) return true;
     return false;

@@ -114,7 +114,7 @@ static void check_fall(const ck_Engine *jolt) {
     ck_Run run;
     load(&fixture, "free_fall");
     const ck_Model *model = &fixture.model;
-    measure(&run, model, jolt, &(ck_Settings){.iterations = 5});
+    measure(&run, model, jolt, &(ck_Settings){.substeps = 5});
     const double *x = ck_trajectory_position(&run.trajectory, run.trajectory.frame_count - 1), t = model->duration;
     const double right = model->position[1] + model->velocity[1] * t + 0.5 * model->gravity[1] * t * t,
                  ahead = 0.5 * model->gravity[1] * t * model->step / 5;
@@ -131,8 +131,8 @@ static void check_rest(const ck_Engine *jolt) {
     Fixture fixture;
     ck_Run coarse, fine, best;
     load(&fixture, "rope_hanging");
-    measure(&coarse, &fixture.model, jolt, &(ck_Settings){.iterations = 4});
-    measure(&fine, &fixture.model, jolt, &(ck_Settings){.iterations = 8});
+    measure(&coarse, &fixture.model, jolt, &(ck_Settings){.substeps = 4});
+    measure(&fine, &fixture.model, jolt, &(ck_Settings){.substeps = 8});
     measure(&best, &fixture.model, ck_engine_find("native-verlet"), NULL);
     double ratio = (lowest(&coarse) - lowest(&best)) / (lowest(&fine) - lowest(&best));
     assert_near("order of a rest", log2(ratio), 2, 0.25);
@@ -153,7 +153,7 @@ static void check_rounding(const ck_Engine *jolt) {
     ck_Run run;
     load(&fixture, "cloth_release");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        measure(&run, &fixture.model, jolt, &(ck_Settings){.iterations = cases[i].iterations});
+        measure(&run, &fixture.model, jolt, &(ck_Settings){.substeps = cases[i].iterations});
         assert_near("sag", -lowest(&run) / 0.95, cases[i].sag, 0.05 * cases[i].sag);
         ck_run_free(&run);
     }

@@ -119,6 +119,14 @@ test("conformance cards stand side by side, verdict and value", async () => {
 	}
 });
 
+test("results are said in words, each with its command", async () => {
+	const said = await page.locator("#findings-list li").allTextContents();
+	const breakdown = said.find((text) => text.startsWith("breakdown: bullet-pbd breaks down on bounce"));
+	assert.ok(breakdown?.includes(aborted), said.join("\n"));
+	assert.ok(said.some((text) => text.startsWith("model: native-bars has no structural stiffness (1000 N/m)")));
+	for (const item of await page.locator("#findings-list code").allTextContents()) assert.match(item, /^clothcheck /);
+});
+
 test("what moved from version to version is drawn", async () => {
 	const rows = csvRows("history.csv").filter((row) => row.metric === "stretch_max");
 	assert.equal(rows.length, 3);
