@@ -64,11 +64,14 @@ function addCollider(bodies, { shape, point, normal, radius, restitution, fricti
   bodies.AddBody(bodies.CreateBody(settings).GetID(), jolt.EActivation_DontActivate);
 }
 
-function substepsFor({ step, gravity, size }) {
-  const pull = Math.hypot(...gravity);
-  const spacing = 2 ** (Math.floor(Math.log2(size)) - 23);
-  const longest = pull > 0 ? Math.sqrt((LEAST_SPACINGS * spacing) / pull) : 0;
-  return Math.max(1, Math.min(MOST_SUBSTEPS, longest > 0 ? Math.floor(step / longest) : MOST_SUBSTEPS));
+// As gravity moves points along its own axes, the spacing there counts.
+function substepsFor({ step, gravity, particles, size }) {
+  const longest = gravity.map((pull, axis) => {
+    const farthest = particles.reduce((most, at) => Math.max(most, Math.abs(at[axis])), size);
+    const spacing = 2 ** (Math.floor(Math.log2(farthest)) - 23);
+    return pull === 0 ? 0 : Math.sqrt((LEAST_SPACINGS * spacing) / Math.abs(pull));
+  });
+  return Math.max(1, Math.min(MOST_SUBSTEPS, Math.floor(step / Math.max(...longest, 1e-30))));
 }
 
 function build(scene) {

@@ -291,14 +291,44 @@ static void find_costs(ck_Findings *findings, const ck_CsvTable *const *tables) 
     }
 }
 
+// Where single precision is the error: one sentence an engine, of the scene on which it is the largest.
+static void find_single(ck_Findings *findings, const ck_CsvTable *const *tables) {
+    const ck_CsvTable *metrics = tables[CK_METRICS];
+    Pair pair;
+    for (int i = 0; i < metrics->row_count; i++) {
+        bool is_first = find_pair(&pair, text(metrics, i, "engine")) && strcmp(pair.engine, "bullet-stock");
+        for (int k = 0; k < i && is_first; k++) is_first = !is_same(metrics, k, i, "engine");
+        int worst = -1;
+        double least = NAN;
+        for (int k = i; k < metrics->row_count && is_first; k++) {
+            if (!is(metrics, k, "engine", pair.engine) || !is(metrics, k, "metric", "position_rms")) continue;
+            const char *scene = text(metrics, k, "scene");
+            int twin = find(metrics, scene, pair.other, "metric", "position_rms");
+            double error = error_of(metrics, scene, pair.engine),
+                   other = twin < 0 ? NAN : number(metrics, twin, "error");
+            if (!(error > LEAST_ERROR && error > 10 * other)) continue;
+            if (worst >= 0 && error <= number(metrics, worst, "error")) continue;
+            worst = k;
+            least = other;
+        }
+        if (worst < 0) continue;
+        const char *scene = text(metrics, worst, "scene");
+        char command[200];
+        snprintf(command, sizeof command, "clothcheck run %s --engine %s --engine %s", scene, pair.engine, pair.other);
+        add(findings, "rounding", scene, pair.engine, command,
+            "%s on %s: single precision is %.3g %% of the size off, where %s, in double, is %.2g %% off", pair.engine,
+            scene, 100 * number(metrics, worst, "error"), pair.other, 100 * least);
+    }
+}
+
 // A rule is one row.
 static const struct {
     ck_LayoutName needs;
     void (*find)(ck_Findings *findings, const ck_CsvTable *const *tables);
 } rules[] = {
-    {CK_RUNS, find_breakdowns},      {CK_PRECISION_SUMMARY, find_rounding},
-    {CK_PRECISION, find_iterations}, {CK_LEDGER, find_models},
-    {CK_RUNS, find_costs},
+    {CK_RUNS, find_breakdowns}, {CK_PRECISION_SUMMARY, find_rounding},
+    {CK_METRICS, find_single},  {CK_PRECISION, find_iterations},
+    {CK_LEDGER, find_models},   {CK_RUNS, find_costs},
 };
 
 ck_Status ck_findings_find(ck_Findings *findings, const ck_CsvTable *const *tables, ck_Error *error) {

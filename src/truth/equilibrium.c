@@ -205,6 +205,13 @@ static int iterate(Newton *newton, double *energy, double *residual, double *gra
     return iteration;
 }
 
+// Positions about the body's first particle: far from the origin doubles would tell neighbours apart by less.
+static double *about_first(const ck_Model *model, const double *position) {
+    double *moved = malloc(3 * sizeof(double) * (size_t)model->particle_count);
+    for (int i = 0; moved && i < 3 * model->particle_count; i++) moved[i] = position[i] - model->position[i % 3];
+    return moved;
+}
+
 ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
                                ck_Error *error) {
     *equilibrium = (ck_Equilibrium){0};
@@ -213,8 +220,11 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
         return ck_fail(error, CK_REFUSED,
                        "%s: equilibrium needs pins that stay, a load, springs that stretch, and no colliders",
                        model->name);
-    Newton newton;
-    ck_Status status = start_newton(&newton, model, start);
+    Newton newton = {0};
+    ck_Model near = *model;
+    near.position = about_first(model, model->position);
+    double *begin = about_first(model, start);
+    ck_Status status = near.position && begin ? start_newton(&newton, &near, begin) : CK_NO_MEMORY;
     double *gradient = malloc(3 * sizeof(double) * (size_t)model->particle_count);
     if (status || !gradient) {
         status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
@@ -224,12 +234,15 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
     equilibrium->is_minimum = factorise(&newton, 0);
     equilibrium->position = newton.position;
     newton.position = NULL;
+    for (int i = 0; i < 3 * model->particle_count; i++) equilibrium->position[i] += model->position[i % 3];
     if (!(equilibrium->residual <= CK_EQUILIBRIUM_RESIDUAL) || !equilibrium->is_minimum)
         status =
             ck_fail(error, CK_REFUSED, "%s: no stable equilibrium: Newton stopped at %.2g of the load%s", model->name,
                     equilibrium->residual, equilibrium->is_minimum ? "" : ", where the energy has no minimum");
 cleanup:
     free(gradient);
+    free(begin);
+    free(near.position);
     end_newton(&newton);
     return status;
 }

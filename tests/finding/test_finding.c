@@ -65,6 +65,8 @@ static void test_comparison(void **state) {
          "truth_kind=trajectory"},
         {"scene=a", "engine=bullet-pbd-float", "metric=position_rms", "error=0.0021", "truth_uncertainty=1e-6",
          "truth_kind=trajectory"},
+        {"scene=far", "engine=bullet-pbd", "metric=position_rms", "error=0.002", "truth_uncertainty=1e-6"},
+        {"scene=far", "engine=bullet-pbd-float", "metric=position_rms", "error=0.8", "truth_uncertainty=1e-6"},
         {"scene=a", "engine=bullet-stock", "metric=position_rms", "error=0.003", "truth_uncertainty=1e-6",
          "truth_kind=trajectory"},
         {"scene=a", "engine=lacking", "metric=position_rms", "error=0.02", "truth_uncertainty=1e-6",
@@ -92,8 +94,12 @@ static void test_comparison(void **state) {
     assert_said(&findings, "cost",
                 "bullet-pbd-float takes 0.5 of the time of bullet-pbd, in double precision (0.5 to 0.5, on 1 scenes), "
                 "and is 0.21 % off where that is 0.2 % (medians)");
+    assert_said(
+        &findings, "rounding",
+        "bullet-pbd-float on far: single precision is 80 % of the size off, where bullet-pbd, in double, is 0.2 % "
+        "off");
     // stock's costs are not told apart, and near is no farther than thrice the others
-    assert_int_equal(findings.count, 3);
+    assert_int_equal(findings.count, 4);
     ck_findings_free(&findings);
 }
 
