@@ -15,6 +15,8 @@
 // Its own settings, by their numbers.
 enum { OWN_INTEGRATOR };
 
+extern const char ck_code_mujoco[];
+
 // What some 2 GiB hold.
 #define MOST_NUMBERS 1e8
 
@@ -234,6 +236,18 @@ static void release(void *state, int particle) {
     if (!now || load(world, NULL)) unload(world);
 }
 
+static ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, const ck_Settings *used, ck_Error *error) {
+    (void)error;
+    code->text = ck_code_mujoco;
+    code->extension = "c";
+    ck_code_text(code, "integrator", integrators[integrator_of(used)]);
+    ck_code_number(code, "radius", ck_mujoco_radius(&scaled->model));
+    ck_code_number(code, "spacing", scaled->model.spacing);
+    ck_code_number(code, "bounce_steps", CK_MUJOCO_BOUNCE_STEPS);
+    ck_code_number(code, "stack", ck_mujoco_stack(&scaled->model, integrators[integrator_of(used)]));
+    return CK_OK;
+}
+
 static const ck_Setting settings[] = {
     {.name = "substeps",
      .slot = CK_SUBSTEPS,
@@ -270,4 +284,5 @@ const ck_Engine ck_mujoco = {
     .read = read_state,
     .release = release,
     .destroy = destroy,
+    .code = code,
 };

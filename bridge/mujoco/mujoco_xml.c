@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 double ck_mujoco_radius(const ck_Model *model) {
     double radius = 0.1 * model->spacing;
@@ -104,9 +105,9 @@ static void write_springs(FILE *out, const ck_Model *model) {
     fprintf(out, "</tendon>\n");
 }
 
-// Numbers that its steps may keep at once. The implicit integrator asks for some thousand a particle.
-static int stack_of(const ck_Model *model) {
-    return (int)fmin(2e8, 1e6 + 4e3 * model->particle_count);
+int ck_mujoco_stack(const ck_Model *model, const char *integrator) {
+    double pulls = !strcmp(integrator, "implicit") ? 30.0 * model->spring_count * model->particle_count : 0;
+    return (int)fmin(2e8, 1e6 + 4e3 * model->particle_count + pulls);
 }
 
 char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size_t *length) {
@@ -120,7 +121,7 @@ char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size
             "iterations=\"100\"/>\n<size njmax=\"%d\" nconmax=\"%d\" nstack=\"%d\"/>\n<worldbody>\n",
             options->step, g[0], g[1], g[2], options->integrator,
             10 + 3 * model->particle_count * model->collider_count, 10 + model->particle_count * model->collider_count,
-            stack_of(model));
+            ck_mujoco_stack(model, options->integrator));
     for (int i = 0; i < model->collider_count; i++) write_collider(out, &model->colliders[i], options);
     for (int i = 0; i < model->particle_count; i++) write_particle(out, model, i, options);
     fprintf(out, "</worldbody>\n");

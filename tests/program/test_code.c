@@ -12,14 +12,17 @@ static void run_there(const char *command) {
 
 // Writes the program of an engine on a scene, builds and runs it, and scores its path beside the engine.
 static void run_program(const char *scene, const char *engine, const char *sets) {
-    bool is_c = !strncmp(engine, "ode", 3);
+    bool is_ode = !strncmp(engine, "ode", 3), is_mujoco = !strcmp(engine, "mujoco");
     char line[1000];
     snprintf(line, sizeof line, "code %s --engine %s %s", scene, engine, sets);
     if (fixture_program(line)) fail_msg("%s fails", line);
-    run_there(is_c ? "mv output cloth.c && cc -O1 -Wall -Wextra -Werror cloth.c $(pkg-config --cflags --libs ode) -lm "
-                     "-o cloth && ./cloth > path.csv"
-                   : "mv output cloth.cpp && g++ -O1 -Wall -Werror -Wno-maybe-uninitialized cloth.cpp $(pkg-config "
-                     "--cflags --libs bullet-float64 | sed 's/-I/-isystem /g') -o cloth && ./cloth > path.csv");
+    run_there(
+        is_mujoco ? "mv output cloth.c && cc -O1 -Wall -Wextra -Werror cloth.c -lmujoco -lm -o cloth && ./cloth > "
+                    "path.csv"
+        : is_ode  ? "mv output cloth.c && cc -O1 -Wall -Wextra -Werror cloth.c $(pkg-config --cflags --libs ode) -lm "
+                    "-o cloth && ./cloth > path.csv"
+                  : "mv output cloth.cpp && g++ -O1 -Wall -Werror -Wno-maybe-uninitialized cloth.cpp $(pkg-config "
+                    "--cflags --libs bullet-float64 | sed 's/-I/-isystem /g') -o cloth && ./cloth > path.csv");
     snprintf(line, sizeof line,
              "score %s --path %s/path.csv --name pasted -e %s %s -r 0 --patience 0 --json --force --out %s/scored",
              scene, fixture_directory, engine, sets, fixture_directory);
@@ -49,12 +52,16 @@ static void test_programs(void **state) {
         {"pendulum", "ode-direct", ""},
         {"rope_over_edge", "ode-direct", ""},
         {"cloth_released", "ode-quick", "--set ode-quick.erp=0.3 --set ode-quick.cfm=0.1"},
+        {"cloth_released", "mujoco", ""},
+        {"bounce", "mujoco", ""},
+        {"network_truss", "mujoco", "--set mujoco.integrator=1"},
     };
     size_t count = sizeof cases / sizeof *cases;
 #ifdef __SANITIZE_ADDRESS__
     count = 1; // what the program prints is the same, and its engines take minutes here
 #endif
     for (size_t i = 0; i < count; i++) {
+        if (!ck_engine_find(cases[i].engine)) continue; // MuJoCo is not everywhere
         run_program(cases[i].scene, cases[i].engine, cases[i].sets);
         char *text = fixture_read("output");
         json_t *document = json_loads(text, 0, NULL), *runs = json_object_get(document, "runs");

@@ -41,9 +41,10 @@ static int run(const ck_Command *command, int argc, char **argv) {
 const ck_Command ck_command_code = {
     .name = "code",
     .arguments = "SCENE",
-    .about = "a program that does the same with Bullet or ODE alone, to paste",
+    .about = "a program that does the same with Bullet, ODE or MuJoCo alone, to paste",
     .help =
-        "Prints a program of its own, C++ for Bullet and C for ODE, that runs the scene as --engine does, with its "
+        "Prints a program of its own, C++ for Bullet and C for ODE and MuJoCo, that runs the scene as --engine does, "
+        "with its "
         "settings and,\nas comments, the traps that the bridge is built around. Its first lines say how to build it. "
         "It prints the path as a\nCSV that 'clothcheck score' takes.",
     .groups = CK_TAKES_RUNS,
