@@ -5,6 +5,7 @@ import { createInterface } from 'node:readline';
 import initialise from 'jolt-physics/wasm-compat';
 
 const LAYERS = 2; // of objects: 0 does not move, 1 does
+const LEAST_SUBSTEPS = 5; // Jolt's own, mNumIterations
 const MOST_SUBSTEPS = 50; // of those that it chooses itself
 // A substep moves a point by g·h² of gravity: where that is fewer than so many spacings of floats at its place, what
 // is rounded away shows in the sag.
@@ -71,7 +72,7 @@ function substepsFor({ step, gravity, particles, size }) {
     const spacing = 2 ** (Math.floor(Math.log2(farthest)) - 23);
     return pull === 0 ? 0 : Math.sqrt((LEAST_SPACINGS * spacing) / Math.abs(pull));
   });
-  return Math.max(1, Math.min(MOST_SUBSTEPS, Math.floor(step / Math.max(...longest, 1e-30))));
+  return Math.max(LEAST_SUBSTEPS, Math.min(MOST_SUBSTEPS, Math.floor(step / Math.max(...longest, 1e-30))));
 }
 
 function build(scene) {
