@@ -106,8 +106,11 @@ static void write_springs(FILE *out, const ck_Model *model) {
 }
 
 int ck_mujoco_stack(const ck_Model *model, const char *integrator) {
-    double pulls = !strcmp(integrator, "implicit") ? 30.0 * model->spring_count * model->particle_count : 0;
-    return (int)fmin(2e8, 1e6 + 4e3 * model->particle_count + pulls);
+    const double joints = 3.0 * model->particle_count, rows = joints * model->collider_count;
+    double numbers = 1e6 + 4e3 * model->particle_count;
+    if (!strcmp(integrator, "implicit")) numbers += 10 * joints * model->spring_count;
+    if (rows > 0) numbers += (joints + rows) * (joints + rows);
+    return (int)fmin(2e8, numbers);
 }
 
 char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size_t *length) {
