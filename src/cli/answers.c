@@ -127,31 +127,23 @@ void ck_answer_summary(ck_Arguments *arguments, const ck_Comparison *comparison)
     fflush(stdout);
 }
 
-static double number(const ck_CsvTable *table, int row, const char *column) {
-    return ck_csv_table_number(table, row, ck_layout_column(table->layout, column));
-}
-
-static const char *text(const ck_CsvTable *table, int row, const char *column) {
-    return ck_csv_table_text(table, row, ck_layout_column(table->layout, column));
-}
-
 static bool is_of(const ck_CsvTable *table, int row, const char *scene, const char *engine) {
-    return !strcmp(text(table, row, "scene"), scene) && !strcmp(text(table, row, "engine"), engine);
+    return !strcmp(ck_csv_text_of(table, row, "scene"), scene) && !strcmp(ck_csv_text_of(table, row, "engine"), engine);
 }
 
 // True for the first row of an engine on a scene.
 static bool is_new(const ck_CsvTable *table, int row, const char *scene) {
-    if (strcmp(text(table, row, "scene"), scene)) return false;
+    if (strcmp(ck_csv_text_of(table, row, "scene"), scene)) return false;
     for (int i = 0; i < row; i++)
-        if (is_of(table, i, scene, text(table, row, "engine"))) return false;
+        if (is_of(table, i, scene, ck_csv_text_of(table, row, "engine"))) return false;
     return true;
 }
 
 // The value of an engine's row of the summary; NAN where there is none.
 static double summary_of(const ck_CsvTable *table, const char *scene, const char *engine, const char *quantity) {
     for (int i = 0; i < table->row_count; i++)
-        if (is_of(table, i, scene, engine) && !strcmp(text(table, i, "quantity"), quantity))
-            return number(table, i, "value");
+        if (is_of(table, i, scene, engine) && !strcmp(ck_csv_text_of(table, i, "quantity"), quantity))
+            return ck_csv_number_of(table, i, "value");
     return NAN;
 }
 
@@ -159,14 +151,15 @@ static double summary_of(const ck_CsvTable *table, const char *scene, const char
 static void add_cost(ck_Answer *answer, const ck_CsvTable *table, const char *scene, const char *engine, double error) {
     int best = -1;
     for (int i = 0; i < table->row_count; i++)
-        if (is_of(table, i, scene, engine) && !strcmp(text(table, i, "status"), "ok") &&
-            number(table, i, "error") <= error &&
-            (best < 0 || number(table, i, "cpu_s") < number(table, best, "cpu_s")))
+        if (is_of(table, i, scene, engine) && !strcmp(ck_csv_text_of(table, i, "status"), "ok") &&
+            ck_csv_number_of(table, i, "error") <= error &&
+            (best < 0 || ck_csv_number_of(table, i, "cpu_s") < ck_csv_number_of(table, best, "cpu_s")))
             best = i;
     char setting[60] = "";
     if (best >= 0)
-        snprintf(setting, sizeof setting, "%s x %s", text(table, best, "substeps"), text(table, best, "iterations"));
-    ck_answer_number(answer, best < 0 ? NAN : number(table, best, "cpu_s"));
+        snprintf(setting, sizeof setting, "%s x %s", ck_csv_text_of(table, best, "substeps"),
+                 ck_csv_text_of(table, best, "iterations"));
+    ck_answer_number(answer, best < 0 ? NAN : ck_csv_number_of(table, best, "cpu_s"));
     ck_answer_text(answer, setting);
 }
 
@@ -186,7 +179,7 @@ static void add_precision(ck_Answer *answer, const ck_CsvTable *table, const ck_
              scene);
     ck_answer_table(answer, "precision", title, columns);
     for (int i = 0; i < table->row_count; i++) {
-        const char *engine = text(table, i, "engine");
+        const char *engine = ck_csv_text_of(table, i, "engine");
         if (!is_new(table, i, scene)) continue;
         ck_answer_text(answer, engine);
         ck_answer_number(answer, summary_of(summary, scene, engine, "floor"));
@@ -202,10 +195,11 @@ static void say_precision(ck_Arguments *arguments, const ck_CsvTable *summary, c
     ck_Answer *answer = &arguments->answer;
     int best = -1;
     for (int i = 0; i < summary->row_count; i++) {
-        if (strcmp(text(summary, i, "scene"), scene)) continue;
-        if (!strcmp(text(summary, i, "quantity"), "cost_to_1_percent") &&
-            is_ranked(arguments, text(summary, i, "engine")) && !isnan(number(summary, i, "value")) &&
-            (best < 0 || number(summary, i, "value") < number(summary, best, "value")))
+        if (strcmp(ck_csv_text_of(summary, i, "scene"), scene)) continue;
+        if (!strcmp(ck_csv_text_of(summary, i, "quantity"), "cost_to_1_percent") &&
+            is_ranked(arguments, ck_csv_text_of(summary, i, "engine")) &&
+            !isnan(ck_csv_number_of(summary, i, "value")) &&
+            (best < 0 || ck_csv_number_of(summary, i, "value") < ck_csv_number_of(summary, best, "value")))
             best = i;
     }
     ck_answer_line(answer, CK_ANSWER_NOTE,
@@ -216,7 +210,7 @@ static void say_precision(ck_Arguments *arguments, const ck_CsvTable *summary, c
         ck_answer_line(answer, CK_ANSWER_SAYS, "%s: no engine comes within 1 %% at any setting tried", scene);
     else
         ck_answer_line(answer, CK_ANSWER_SAYS, "%s: the cheapest way to 1 %% is %s, %.3g s", scene,
-                       text(summary, best, "engine"), number(summary, best, "value"));
+                       ck_csv_text_of(summary, best, "engine"), ck_csv_number_of(summary, best, "value"));
 }
 
 ck_Status ck_answer_precision(ck_Arguments *arguments, const char *scene, ck_Error *error) {
@@ -246,18 +240,21 @@ ck_Status ck_answer_stability(ck_Answer *answer, const char *directory, const ch
     if (!status) ck_answer_table(answer, "stability", title, columns);
     for (int pass = 0; pass < 2 && !status; pass++)
         for (int i = 0; i < table.row_count; i++) {
-            double critical = number(&table, i, "critical_step_s"), theory = number(&table, i, "predicted_step_s");
-            if (strcmp(text(&table, i, "scene"), scene) || strcmp(text(&table, i, "case"), "critical")) continue;
+            double critical = ck_csv_number_of(&table, i, "critical_step_s"),
+                   theory = ck_csv_number_of(&table, i, "predicted_step_s");
+            if (strcmp(ck_csv_text_of(&table, i, "scene"), scene) ||
+                strcmp(ck_csv_text_of(&table, i, "case"), "critical"))
+                continue;
             if (pass && isnan(critical))
-                ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %.140s", text(&table, i, "engine"),
-                               text(&table, i, "damping"), text(&table, i, "reason"));
+                ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %.140s", ck_csv_text_of(&table, i, "engine"),
+                               ck_csv_text_of(&table, i, "damping"), ck_csv_text_of(&table, i, "reason"));
             if (pass) continue;
-            ck_answer_text(answer, text(&table, i, "engine"));
-            ck_answer_text(answer, text(&table, i, "damping"));
+            ck_answer_text(answer, ck_csv_text_of(&table, i, "engine"));
+            ck_answer_text(answer, ck_csv_text_of(&table, i, "damping"));
             ck_answer_number(answer, critical);
             ck_answer_number(answer, theory);
             ck_answer_number(answer, critical / theory);
-            ck_answer_text(answer, text(&table, i, "status"));
+            ck_answer_text(answer, ck_csv_text_of(&table, i, "status"));
         }
     ck_csv_table_free(&table);
     return status;
@@ -267,29 +264,29 @@ ck_Status ck_answer_stability(ck_Answer *answer, const char *directory, const ch
 static void list_changes(const ck_CsvTable *table, int first, char *changes, size_t size) {
     size_t used = 0;
     for (int i = first; i < table->row_count && used < size; i++) {
-        if (!is_of(table, i, text(table, first, "scene"), text(table, first, "engine")) ||
-            strcmp(text(table, i, "left_out"), text(table, first, "left_out")) ||
-            strcmp(text(table, i, "matters"), "yes"))
+        if (!is_of(table, i, ck_csv_text_of(table, first, "scene"), ck_csv_text_of(table, first, "engine")) ||
+            strcmp(ck_csv_text_of(table, i, "left_out"), ck_csv_text_of(table, first, "left_out")) ||
+            strcmp(ck_csv_text_of(table, i, "matters"), "yes"))
             continue;
-        const char *metric = text(table, i, "metric"), *separator = used ? ", " : "";
-        double change = number(table, i, "change");
+        const char *metric = ck_csv_text_of(table, i, "metric"), *separator = used ? ", " : "";
+        double change = ck_csv_number_of(table, i, "change");
         used +=
             (size_t)(isinf(change) ? snprintf(changes + used, size - used, "%s%s (has none %s)", separator, metric,
-                                              isnan(number(table, i, "with")) ? "with" : "without")
+                                              isnan(ck_csv_number_of(table, i, "with")) ? "with" : "without")
                                    : snprintf(changes + used, size - used, "%s%s by %.2g", separator, metric, change));
     }
 }
 
 static void add_need(ck_Answer *answer, const ck_CsvTable *table, int row) {
     char changes[400] = "";
-    bool has_metric = *text(table, row, "metric");
+    bool has_metric = *ck_csv_text_of(table, row, "metric");
     if (has_metric) list_changes(table, row, changes, sizeof changes);
-    bool was_refused = !strcmp(text(table, row, "status"), ck_run_status_names[CK_RUN_REFUSED]);
-    ck_answer_text(answer, text(table, row, "left_out"));
+    bool was_refused = !strcmp(ck_csv_text_of(table, row, "status"), ck_run_status_names[CK_RUN_REFUSED]);
+    ck_answer_text(answer, ck_csv_text_of(table, row, "left_out"));
     ck_answer_text(answer, was_refused ? "not tried" : !has_metric || *changes ? "is needed" : "is not needed");
-    ck_answer_number(answer, number(table, row, "cpu_with_s"));
-    ck_answer_number(answer, number(table, row, "cpu_without_s"));
-    ck_answer_text(answer, has_metric ? changes : text(table, row, "reason"));
+    ck_answer_number(answer, ck_csv_number_of(table, row, "cpu_with_s"));
+    ck_answer_number(answer, ck_csv_number_of(table, row, "cpu_without_s"));
+    ck_answer_text(answer, has_metric ? changes : ck_csv_text_of(table, row, "reason"));
 }
 
 ck_Status ck_answer_needs(ck_Answer *answer, const char *directory, const char *scene, ck_Error *error) {
@@ -300,10 +297,10 @@ ck_Status ck_answer_needs(ck_Answer *answer, const char *directory, const char *
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_NEEDS], error);
     if (!status) ck_answer_table(answer, "needs", NULL, columns);
     for (int i = 0; i < table.row_count && !status; i++) {
-        bool is_first = !strcmp(text(&table, i, "scene"), scene);
+        bool is_first = !strcmp(ck_csv_text_of(&table, i, "scene"), scene);
         for (int k = 0; k < i && is_first; k++)
-            is_first = !is_of(&table, k, scene, text(&table, i, "engine")) ||
-                       strcmp(text(&table, k, "left_out"), text(&table, i, "left_out"));
+            is_first = !is_of(&table, k, scene, ck_csv_text_of(&table, i, "engine")) ||
+                       strcmp(ck_csv_text_of(&table, k, "left_out"), ck_csv_text_of(&table, i, "left_out"));
         if (is_first) add_need(answer, &table, i);
     }
     ck_csv_table_free(&table);
@@ -334,12 +331,12 @@ ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *er
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_BENCH], error);
     if (!status) ck_answer_table(answer, "bench", NULL, columns);
     for (int i = 0; i < table.row_count && !status; i++) {
-        double value = number(&table, i, "value");
-        if (strcmp(text(&table, i, "metric"), "update_time") || isnan(value)) continue;
-        ck_answer_text(answer, text(&table, i, "body"));
-        ck_answer_number(answer, number(&table, i, "particles"));
-        ck_answer_text(answer, text(&table, i, "engine"));
-        ck_answer_text(answer, text(&table, i, "setup"));
+        double value = ck_csv_number_of(&table, i, "value");
+        if (strcmp(ck_csv_text_of(&table, i, "metric"), "update_time") || isnan(value)) continue;
+        ck_answer_text(answer, ck_csv_text_of(&table, i, "body"));
+        ck_answer_number(answer, ck_csv_number_of(&table, i, "particles"));
+        ck_answer_text(answer, ck_csv_text_of(&table, i, "engine"));
+        ck_answer_text(answer, ck_csv_text_of(&table, i, "setup"));
         ck_answer_number(answer, value);
     }
     ck_csv_table_free(&table);
@@ -358,12 +355,12 @@ ck_Status ck_answer_quirks(ck_Answer *answer, const char *directory, ck_Error *e
     ck_Status status = ck_csv_table_read(&table, directory, &ck_layouts[CK_QUIRKS], error);
     if (!status) ck_answer_table(answer, "quirks", NULL, columns);
     for (int i = 0; i < table.row_count && !status; i++) {
-        ck_answer_text(answer, text(&table, i, "engine"));
-        ck_answer_text(answer, text(&table, i, "quirk"));
-        ck_answer_text(answer, text(&table, i, "metric"));
-        ck_answer_number(answer, number(&table, i, "as_it_was"));
-        ck_answer_number(answer, number(&table, i, "mended"));
-        ck_answer_number(answer, number(&table, i, "physics"));
+        ck_answer_text(answer, ck_csv_text_of(&table, i, "engine"));
+        ck_answer_text(answer, ck_csv_text_of(&table, i, "quirk"));
+        ck_answer_text(answer, ck_csv_text_of(&table, i, "metric"));
+        ck_answer_number(answer, ck_csv_number_of(&table, i, "as_it_was"));
+        ck_answer_number(answer, ck_csv_number_of(&table, i, "mended"));
+        ck_answer_number(answer, ck_csv_number_of(&table, i, "physics"));
     }
     ck_csv_table_free(&table);
     return status;

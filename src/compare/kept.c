@@ -42,8 +42,7 @@ static ck_Status check_lost(const ck_Kept *kept, const ck_Layout *layout, bool k
     ck_CsvTable table;
     ck_Status status = read_table(&table, kept->directory, layout, error);
     for (int i = 0; i < table.row_count && !status; i++) {
-        const char *scene = ck_csv_table_text(&table, i, 0),
-                   *engine = ck_csv_table_text(&table, i, ck_layout_column(layout, "engine"));
+        const char *scene = ck_csv_table_text(&table, i, 0), *engine = ck_csv_text_of(&table, i, "engine");
         if (has_scene(kept, scene) && has_engine(kept, engine)) continue;
         bool can_stay = !is_again(kept, &table, i);
         if (can_stay && keeps_others) continue;

@@ -185,3 +185,11 @@ double ck_csv_table_number(const ck_CsvTable *table, int row, int column) {
     const char *text = ck_csv_table_text(table, row, column);
     return *text ? strtod(text, NULL) : NAN;
 }
+
+const char *ck_csv_text_of(const ck_CsvTable *table, int row, const char *column) {
+    return ck_csv_table_text(table, row, ck_layout_column(table->layout, column));
+}
+
+double ck_csv_number_of(const ck_CsvTable *table, int row, const char *column) {
+    return ck_csv_table_number(table, row, ck_layout_column(table->layout, column));
+}

@@ -27,4 +27,8 @@ const char *ck_csv_table_text(const ck_CsvTable *table, int row, int column);
 // NaN where the field is empty.
 double ck_csv_table_number(const ck_CsvTable *table, int row, int column);
 
+// The same of a column by its name, which the layout must have.
+const char *ck_csv_text_of(const ck_CsvTable *table, int row, const char *column);
+double ck_csv_number_of(const ck_CsvTable *table, int row, const char *column);
+
 #endif

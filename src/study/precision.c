@@ -244,7 +244,8 @@ static void summarise_finest(const ck_Precision *precision, const ck_JournalRow 
              "in a step there",
              rows[finest].values[ERROR], is_rounding ? "rounding from here on" : "by its method, not by rounding",
              rounding);
-    add_summary(precision, csv, engine, "finest_useful_substeps", "1", rows[best].values[SUBSTEPS], NAN, reason);
+    add_summary(precision, csv, engine, is_rounding ? "finest_before_rounding" : "finest_useful_substeps", "1",
+                rows[best].values[SUBSTEPS], NAN, reason);
 }
 
 void ck_precision_write(const ck_Precision *precision, const ck_JournalRow *rows, ck_Csv *csv, ck_Csv *summary) {

@@ -20,20 +20,12 @@ typedef struct Diff {
     int moved, changed, faster, slower, only_old, only_new;
 } Diff;
 
-static const char *text(const ck_CsvTable *table, int row, const char *column) {
-    return ck_csv_table_text(table, row, ck_layout_column(table->layout, column));
-}
-
-static double number(const ck_CsvTable *table, int row, const char *column) {
-    return ck_csv_table_number(table, row, ck_layout_column(table->layout, column));
-}
-
 // The row of other that has the same in some columns; negative: none.
 static int find_row(const ck_CsvTable *other, const ck_CsvTable *table, int row, const char *const *columns) {
     for (int i = 0; i < other->row_count; i++) {
         bool is_same = true;
         for (const char *const *column = columns; *column && is_same; column++)
-            is_same = !strcmp(text(table, row, *column), text(other, i, *column));
+            is_same = !strcmp(ck_csv_text_of(table, row, *column), ck_csv_text_of(other, i, *column));
         if (is_same) return i;
     }
     return -1;
@@ -53,12 +45,13 @@ static void show_statuses(Diff *diff) {
     const ck_CsvTable *old = &diff->old.runs, *new = &diff->new.runs;
     for (int i = 0; i < new->row_count; i++) {
         int before = find_row(old, new, i, run_key);
-        const char *was = before < 0 ? "" : text(old, before, "status"), *is = text(new, i, "status");
+        const char *was = before < 0 ? "" : ck_csv_text_of(old, before, "status"),
+                   *is = ck_csv_text_of(new, i, "status");
         diff->only_new += before < 0;
         if (before < 0 || !strcmp(was, is)) continue;
         diff->changed++;
-        ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%s %s: %s, was %s: %.140s", text(new, i, "scene"),
-                       text(new, i, "engine"), is, was, text(new, i, "reason"));
+        ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%s %s: %s, was %s: %.140s", ck_csv_text_of(new, i, "scene"),
+                       ck_csv_text_of(new, i, "engine"), is, was, ck_csv_text_of(new, i, "reason"));
     }
     for (int i = 0; i < old->row_count; i++) diff->only_old += find_row(new, old, i, run_key) < 0;
 }
@@ -82,14 +75,16 @@ static void show_metrics(Diff *diff) {
     for (int i = 0; i < new->row_count; i++) {
         int before = find_row(old, new, i, metric_key);
         if (before < 0) continue;
-        double was = number(old, before, "value"), is = number(new, i, "value");
-        double uncertainty = fmax(number(old, before, "truth_uncertainty"), number(new, i, "truth_uncertainty"));
+        double was = ck_csv_number_of(old, before, "value"), is = ck_csv_number_of(new, i, "value");
+        double uncertainty =
+            fmax(ck_csv_number_of(old, before, "truth_uncertainty"), ck_csv_number_of(new, i, "truth_uncertainty"));
         if (!has_moved(was, is, isnan(uncertainty) ? 0 : uncertainty)) continue;
         if (!diff->moved++) ck_answer_table(diff->answer, "moved", "Values that moved:", columns);
-        ck_answer_text(diff->answer, text(new, i, "scene"));
-        ck_answer_text(diff->answer, text(new, i, "engine"));
-        ck_answer_text(diff->answer, text(new, i, "metric"));
-        const double numbers[] = {was, is, number(old, before, "error"), number(new, i, "error"), uncertainty};
+        ck_answer_text(diff->answer, ck_csv_text_of(new, i, "scene"));
+        ck_answer_text(diff->answer, ck_csv_text_of(new, i, "engine"));
+        ck_answer_text(diff->answer, ck_csv_text_of(new, i, "metric"));
+        const double numbers[] = {was, is, ck_csv_number_of(old, before, "error"), ck_csv_number_of(new, i, "error"),
+                                  uncertainty};
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) ck_answer_number(diff->answer, numbers[k]);
     }
 }
@@ -102,17 +97,18 @@ static void show_costs(Diff *diff) {
     const ck_CsvTable *old = &diff->old.runs, *new = &diff->new.runs;
     for (int i = 0; i < new->row_count; i++) {
         int before = find_row(old, new, i, run_key);
-        if (before < 0 || number(old, before, "simulated_s") != number(new, i, "simulated_s")) continue;
-        bool is_faster = number(new, i, "cpu_high_s") < number(old, before, "cpu_low_s");
-        bool is_slower = number(new, i, "cpu_low_s") > number(old, before, "cpu_high_s");
+        if (before < 0 || ck_csv_number_of(old, before, "simulated_s") != ck_csv_number_of(new, i, "simulated_s"))
+            continue;
+        bool is_faster = ck_csv_number_of(new, i, "cpu_high_s") < ck_csv_number_of(old, before, "cpu_low_s");
+        bool is_slower = ck_csv_number_of(new, i, "cpu_low_s") > ck_csv_number_of(old, before, "cpu_high_s");
         if (!is_faster && !is_slower) continue;
         if (!(diff->faster + diff->slower))
             ck_answer_table(diff->answer, "costs", "Costs whose intervals do not meet:", columns);
         diff->faster += is_faster;
         diff->slower += is_slower;
-        double was = number(old, before, "cpu_median_s"), is = number(new, i, "cpu_median_s");
-        ck_answer_text(diff->answer, text(new, i, "scene"));
-        ck_answer_text(diff->answer, text(new, i, "engine"));
+        double was = ck_csv_number_of(old, before, "cpu_median_s"), is = ck_csv_number_of(new, i, "cpu_median_s");
+        ck_answer_text(diff->answer, ck_csv_text_of(new, i, "scene"));
+        ck_answer_text(diff->answer, ck_csv_text_of(new, i, "engine"));
         ck_answer_number(diff->answer, was);
         ck_answer_number(diff->answer, is);
         ck_answer_number(diff->answer, is / was);

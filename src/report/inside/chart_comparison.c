@@ -71,11 +71,11 @@ int ck_chart_select_errors(const ck_ReportData *data, const char *scene, FILE *o
     int rows = 0;
     for (int row = 0; metrics && row < metrics->row_count; row++) {
         const char *metric = ck_csv_table_text(metrics, row, 2);
-        double error = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error"));
+        double error = ck_csv_number_of(metrics, row, "error");
         if (!ck_report_is_of(metrics, row, scene) || !is_shown(ck_csv_table_text(metrics, row, 1)) ||
             !ck_report_shows(metric) || !isfinite(error))
             continue;
-        double uncertainty = ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "truth_uncertainty"));
+        double uncertainty = ck_csv_number_of(metrics, row, "truth_uncertainty");
         fprintf(out, "%s,%s,%.9g,%.9g\n", ck_csv_table_text(metrics, row, 1), metric, on_axis(error), uncertainty);
         rows++;
     }
@@ -89,7 +89,7 @@ int ck_chart_select_deviations(const ck_ReportData *data, const char *scene, FIL
     for (int row = 0; table && row < table->row_count; row++) {
         if (!ck_report_is_of(table, row, scene) || strcmp(ck_csv_table_text(table, row, 1), "position_rms")) continue;
         const char *one = ck_csv_table_text(table, row, 2), *other = ck_csv_table_text(table, row, 3);
-        double deviation = ck_csv_table_number(table, row, ck_layout_column(table->layout, "deviation"));
+        double deviation = ck_csv_number_of(table, row, "deviation");
         if (!is_shown(one) || !is_shown(other) || !isfinite(deviation)) continue;
         fprintf(out, "%s,%s,%.9g\n%s,%s,%.9g\n", one, other, deviation, other, one, deviation);
         rows += 2;

@@ -9,14 +9,6 @@
 #define LEAST_EXCESS 1e-4
 #define MOST_EXCESS 1e4
 
-static double number(const ck_CsvTable *table, int row, const char *column) {
-    return ck_csv_table_number(table, row, ck_layout_column(table->layout, column));
-}
-
-static const char *text(const ck_CsvTable *table, int row, const char *column) {
-    return ck_csv_table_text(table, row, ck_layout_column(table->layout, column));
-}
-
 // What has a place on a logarithmic axis.
 static bool is_drawn(double value) {
     return value > 0 && isfinite(value);
@@ -33,10 +25,10 @@ static double uncertainty_of(const ck_ReportData *data, const char *scene) {
 // True where no other row of the same engine is both cheaper and nearer to the truth.
 static bool is_on_own_front(const ck_CsvTable *table, int row) {
     for (int other = 0; other < table->row_count; other++)
-        if (ck_report_is_of(table, other, text(table, row, "scene")) &&
-            !strcmp(text(table, other, "engine"), text(table, row, "engine")) &&
-            number(table, other, "cpu_s") < number(table, row, "cpu_s") &&
-            number(table, other, "error") <= number(table, row, "error"))
+        if (ck_report_is_of(table, other, ck_csv_text_of(table, row, "scene")) &&
+            !strcmp(ck_csv_text_of(table, other, "engine"), ck_csv_text_of(table, row, "engine")) &&
+            ck_csv_number_of(table, other, "cpu_s") < ck_csv_number_of(table, row, "cpu_s") &&
+            ck_csv_number_of(table, other, "error") <= ck_csv_number_of(table, row, "error"))
             return false;
     return true;
 }
@@ -45,10 +37,10 @@ int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE
     const ck_CsvTable *table = ck_report_table(data, CK_PRECISION);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        double error = number(table, row, "error"), cost = number(table, row, "cpu_s");
+        double error = ck_csv_number_of(table, row, "error"), cost = ck_csv_number_of(table, row, "cpu_s");
         if (!ck_report_is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
-        fprintf(out, "%s,%.9g,%.9g,%d,%d,%.9g\n", text(table, row, "engine"), cost, error, is_on_own_front(table, row),
-                number(table, row, "on_front") > 0, uncertainty_of(data, scene));
+        fprintf(out, "%s,%.9g,%.9g,%d,%d,%.9g\n", ck_csv_text_of(table, row, "engine"), cost, error,
+                is_on_own_front(table, row), ck_csv_number_of(table, row, "on_front") > 0, uncertainty_of(data, scene));
         rows++;
     }
     return rows;
@@ -56,9 +48,9 @@ int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE
 
 static bool varies_iterations(const ck_CsvTable *table, int row) {
     for (int other = 0; other < table->row_count; other++)
-        if (ck_report_is_of(table, other, text(table, row, "scene")) &&
-            !strcmp(text(table, other, "engine"), text(table, row, "engine")) &&
-            number(table, other, "iterations") != number(table, row, "iterations"))
+        if (ck_report_is_of(table, other, ck_csv_text_of(table, row, "scene")) &&
+            !strcmp(ck_csv_text_of(table, other, "engine"), ck_csv_text_of(table, row, "engine")) &&
+            ck_csv_number_of(table, other, "iterations") != ck_csv_number_of(table, row, "iterations"))
             return true;
     return false;
 }
@@ -67,10 +59,11 @@ int ck_chart_select_iterations(const ck_ReportData *data, const char *scene, FIL
     const ck_CsvTable *table = ck_report_table(data, CK_PRECISION);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        double error = number(table, row, "error"), cost = number(table, row, "cpu_s");
+        double error = ck_csv_number_of(table, row, "error"), cost = ck_csv_number_of(table, row, "cpu_s");
         if (!ck_report_is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
         if (!varies_iterations(table, row)) continue;
-        fprintf(out, "%s,%g,%.9g,%.9g\n", text(table, row, "engine"), number(table, row, "iterations"), cost, error);
+        fprintf(out, "%s,%g,%.9g,%.9g\n", ck_csv_text_of(table, row, "engine"),
+                ck_csv_number_of(table, row, "iterations"), cost, error);
         rows++;
     }
     return rows;
@@ -81,16 +74,17 @@ int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE
     const ck_CsvTable *table = ck_report_table(data, CK_STABILITY);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        bool is_cell = !strcmp(text(table, row, "case"), "map");
-        double step = number(table, row, is_cell ? "time_step_s" : "critical_step_s");
-        const char *status = text(table, row, "status");
+        bool is_cell = !strcmp(ck_csv_text_of(table, row, "case"), "map");
+        double step = ck_csv_number_of(table, row, is_cell ? "time_step_s" : "critical_step_s");
+        const char *status = ck_csv_text_of(table, row, "status");
         if (!ck_report_is_of(table, row, scene) || !is_drawn(step) ||
-            !is_drawn(number(table, row, "stiffness_factor")) || strcmp(text(table, row, "damping"), "scene"))
+            !is_drawn(ck_csv_number_of(table, row, "stiffness_factor")) ||
+            strcmp(ck_csv_text_of(table, row, "damping"), "scene"))
             continue;
         if (!strcmp(status, "unsupported") || !strcmp(status, "refused")) continue;
-        fprintf(out, "%s,%.9g,%.9g,%s,%.9g,%g\n", text(table, row, "engine"), step,
-                number(table, row, "stiffness_factor"), is_cell ? status : "critical",
-                number(table, row, "predicted_step_s"), number(table, row, "iterations"));
+        fprintf(out, "%s,%.9g,%.9g,%s,%.9g,%g\n", ck_csv_text_of(table, row, "engine"), step,
+                ck_csv_number_of(table, row, "stiffness_factor"), is_cell ? status : "critical",
+                ck_csv_number_of(table, row, "predicted_step_s"), ck_csv_number_of(table, row, "iterations"));
         rows++;
     }
     return rows;
@@ -101,9 +95,9 @@ int ck_chart_select_needs(const ck_ReportData *data, const char *scene, FILE *ou
     const ck_CsvTable *table = ck_report_table(data, CK_NEEDS);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        double excess = fabs(number(table, row, "change")) / number(table, row, "tolerance");
+        double excess = fabs(ck_csv_number_of(table, row, "change")) / ck_csv_number_of(table, row, "tolerance");
         if (!ck_report_is_of(table, row, scene) || isnan(excess)) continue;
-        fprintf(out, "\"%s\",%s,%.9g\n", text(table, row, "left_out"), text(table, row, "metric"),
+        fprintf(out, "\"%s\",%s,%.9g\n", ck_csv_text_of(table, row, "left_out"), ck_csv_text_of(table, row, "metric"),
                 fmax(LEAST_EXCESS, fmin(MOST_EXCESS, excess)));
         rows++;
     }
@@ -115,13 +109,15 @@ int ck_chart_select_size(const ck_ReportData *data, const char *scene, FILE *out
     const ck_CsvTable *table = ck_report_table(data, CK_BENCH);
     int rows = 0;
     for (int row = 0; table && row < table->row_count; row++) {
-        const char *metric = text(table, row, "metric");
+        const char *metric = ck_csv_text_of(table, row, "metric");
         bool is_growth = !strcmp(metric, "growth_step_time");
-        bool is_cost = !strcmp(metric, "second_time") && !strcmp(text(table, row, "setup"), "automatic");
-        double value = number(table, row, "value");
-        if (strcmp(text(table, row, "body"), "cloth") || !is_drawn(value) || !(is_growth || is_cost)) continue;
-        if (!is_drawn(number(table, row, "particles"))) continue;
-        fprintf(out, "%s,%g,%.9g,%s\n", text(table, row, "engine"), number(table, row, "particles"), value, metric);
+        bool is_cost = !strcmp(metric, "second_time") && !strcmp(ck_csv_text_of(table, row, "setup"), "automatic");
+        double value = ck_csv_number_of(table, row, "value");
+        if (strcmp(ck_csv_text_of(table, row, "body"), "cloth") || !is_drawn(value) || !(is_growth || is_cost))
+            continue;
+        if (!is_drawn(ck_csv_number_of(table, row, "particles"))) continue;
+        fprintf(out, "%s,%g,%.9g,%s\n", ck_csv_text_of(table, row, "engine"), ck_csv_number_of(table, row, "particles"),
+                value, metric);
         rows++;
     }
     return rows;

@@ -123,7 +123,7 @@ static ck_Status find_names(ck_ReportData *data, ck_Error *error) {
 
 static bool has_error(const ck_CsvTable *metrics, int row, const char *scene, const char *metric) {
     return ck_report_is_of(metrics, row, scene) && !strcmp(ck_csv_table_text(metrics, row, 2), metric) &&
-           !isnan(ck_csv_table_number(metrics, row, ck_layout_column(metrics->layout, "error")));
+           !isnan(ck_csv_number_of(metrics, row, "error"));
 }
 
 // The metric that stands for a scene's error; NULL: nothing has a truth.
@@ -149,24 +149,22 @@ static int find_answer(const ck_CsvTable *metrics, const char *scene, const char
 
 static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
     const ck_CsvTable *metrics = ck_report_table(data, CK_METRICS);
-    const ck_Layout *layout = runs->layout;
     ck_Summary one = {
         .scene = ck_csv_table_text(runs, row, 0),
         .engine = ck_csv_table_text(runs, row, 1),
-        .status = ck_csv_table_text(runs, row, ck_layout_column(layout, "status")),
+        .status = ck_csv_text_of(runs, row, "status"),
         .metric = "",
         .error = NAN,
         .uncertainty = NAN,
         .told = NAN,
-        .timed = ck_csv_table_number(runs, row, ck_layout_column(layout, "simulated_s")),
-        .cost = ck_csv_table_number(runs, row, ck_layout_column(layout, "cpu_median_s")) /
-                ck_csv_table_number(runs, row, ck_layout_column(layout, "simulated_s")),
+        .timed = ck_csv_number_of(runs, row, "simulated_s"),
+        .cost = ck_csv_number_of(runs, row, "cpu_median_s") / ck_csv_number_of(runs, row, "simulated_s"),
     };
     int answer = metrics ? find_answer(metrics, one.scene, one.engine) : -1;
     if (answer < 0) return one;
     one.metric = ck_csv_table_text(metrics, answer, 2);
-    one.error = ck_csv_table_number(metrics, answer, ck_layout_column(metrics->layout, "error"));
-    one.uncertainty = ck_csv_table_number(metrics, answer, ck_layout_column(metrics->layout, "truth_uncertainty"));
+    one.error = ck_csv_number_of(metrics, answer, "error");
+    one.uncertainty = ck_csv_number_of(metrics, answer, "truth_uncertainty");
     one.told = one.uncertainty > one.error ? one.uncertainty : one.error;
     return one;
 }
