@@ -236,7 +236,8 @@ static void find_models(ck_Findings *findings, const ck_CsvTable *const *tables)
         if (lack.scenes > 1) snprintf(elsewhere, sizeof elsewhere, "; so it is on %d more", lack.scenes - 1);
         snprintf(command, sizeof command, "clothcheck run %s --engine %s", scene, engine);
         add(findings, "model", scene, engine, command,
-            "%s has no %s, and is %.3g %% of the size off on %s, where the middle of those that have it is %.2g %% "
+            "%s has no %s, which may be why it is %.3g %% of the size off on %s, where the middle of those that have "
+            "it is %.2g %% "
             "off%s",
             engine, missed, 100 * lack.error, scene, 100 * lack.others, elsewhere);
     }

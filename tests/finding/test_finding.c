@@ -95,7 +95,8 @@ static void test_comparison(void **state) {
     find(&findings, directory);
     assert_said(&findings, "breakdown", "one breaks down on a, b; on a: left the finite numbers");
     assert_said(&findings, "model",
-                "lacking has no spring damping (0.5 N*s/m), and is 2 % of the size off on a, where the middle of those "
+                "lacking has no spring damping (0.5 N*s/m), which may be why it is 2 % of the size off on a, where the "
+                "middle of those "
                 "that have it is 0.21 % off");
     assert_said(&findings, "cost",
                 "bullet-pbd-float takes 0.5 of the time of bullet-pbd, in double precision (0.5 to 0.5, on 1 scene), "
