@@ -1,5 +1,6 @@
 # Error against cost over time steps and iterations. Engine, CPU s, error, on its engine's front, on the front, the
-# truth's uncertainty.
+# truth's uncertainty, the share of a step's fall
+# that is the spacing of numbers.
 set logscale xy
 set format x '10^{%L}'
 set format y '10^{%L}'
@@ -15,8 +16,12 @@ if (floor > 0) {
 	set arrow from graph 0, first floor to graph 1, first floor nohead dashtype 2 linecolor '#444444'
 	set label 'the truth is known to this' at graph 0.01, first floor left offset 0, 0.5 textcolor '#444444'
 }
+lost = 0
+stats data using (lost = lost + ($7 >= 0.5), 0) skip 1 nooutput
 set offsets graph 0.02, graph 0.04, graph 0.02, graph 0.05
 plot data using ($5 == 1 ? $2 : NaN):3 skip 1 smooth unique with steps linecolor '#000000' linewidth 2.5 title 'Pareto front', \
 	for [engine in present] data using (only(engine, column(2))):3 skip 1 with points linetype place(engine) pointsize 0.7 notitle, \
 	for [engine in present] data using (only(engine, $4 == 1 ? column(2) : NaN)):3 skip 1 smooth unique \
-		with linespoints linetype place(engine) pointsize 1 title engine noenhanced
+		with linespoints linetype place(engine) pointsize 1 title engine noenhanced, \
+	data using ($7 >= 0.5 ? $2 : NaN):3 skip 1 with points pointtype 6 pointsize 1.8 linecolor '#aa0000' \
+		title (lost ? 'a step is lost in rounding' : '')

@@ -1,5 +1,6 @@
 # Where each method fails over time step and stiffness, the limit that theory gives it, and the critical step that was
-# found. Engine, step s, stiffness factor, status or 'critical', predicted step s, iterations.
+# found. Engine, step s, stiffness factor, status or 'critical', predicted step s, iterations, step
+# in which a point falls by the spacing of numbers.
 count = words(present)
 columns = count > 4 ? 3 : count > 1 ? 2 : 1
 rows = (count + columns - 1)/columns
@@ -8,7 +9,8 @@ marks = '6 4 9 5 7 11 13 2 1'
 shades = '#117733 #117733 #b8650a #aa3300 #aa0000 #666666 #666666 #000000 #000000'
 found = ''
 stats data using (found = add(found, strcol(4)), $2) skip 1 nooutput
-set xrange [STATS_min/2:STATS_max*2]
+shortest = STATS_min/2
+set xrange [shortest:STATS_max*2]
 # rows of one stiffness at several iterations stand above each other
 lifted(stiffness, iterations) = stiffness*(iterations > 0 ? 1.8 : 1)
 stats data using 3 skip 1 nooutput
@@ -25,7 +27,8 @@ do for [engine in present] {
 	plot for [i = 1:words(states)] data using (only(engine, strcol(4) eq word(states, i) ? $2 : NaN)):(lifted($3, $6)) skip 1 \
 			with points pointtype int(word(marks, i)) pointsize 0.8 linecolor rgb word(shades, i), \
 		data using (only(engine, $5)):3 skip 1 smooth unique with lines linecolor '#000000' linewidth 2 dashtype 2, \
-		data using (only(engine, strcol(4) eq 'critical' ? $2 : NaN)):3 skip 1 with points pointtype 3 pointsize 1.6 linecolor '#000000'
+		data using (only(engine, strcol(4) eq 'critical' ? $2 : NaN)):3 skip 1 with points pointtype 3 pointsize 1.6 linecolor '#000000', \
+		data using (only(engine, $7 > shortest ? $7 : NaN)):3 skip 1 with lines linecolor '#aa0000' linewidth 2 dashtype 3
 }
 # the key, below all panels
 unset xlabel
@@ -45,5 +48,6 @@ set key center center horizontal maxcols 6 maxrows 2 samplen 4 width 2
 plot for [i = 1:words(states)] (strstrt(found.' ', ' '.word(states, i).' ') ? 2 : NaN) with points pointtype int(word(marks, i)) \
 		linecolor rgb word(shades, i) title (strstrt(found.' ', ' '.word(states, i).' ') ? word(states, i) : '') noenhanced, \
 	2 with lines linecolor '#000000' linewidth 2 dashtype 2 title 'limit by theory', \
-	2 with points pointtype 3 linecolor '#000000' title 'critical step, bisected'
+	2 with points pointtype 3 linecolor '#000000' title 'critical step, bisected', \
+	2 with lines linecolor '#aa0000' linewidth 2 dashtype 3 title 'a step falls by the spacing of numbers'
 unset multiplot

@@ -3,7 +3,7 @@
 #include "vector.h"
 
 const char *ck_own_version(void) {
-    return CK_VERSION;
+    return CK_VERSION " double";
 }
 
 static void ledger_contact(ck_Ledger *ledger, const ck_Model *model) {

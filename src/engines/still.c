@@ -4,7 +4,7 @@
 #include <string.h>
 
 static const char *version(void) {
-    return CK_VERSION;
+    return CK_VERSION " double";
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,

@@ -1,8 +1,8 @@
 #include "precision.h"
 
+#include "rounding.h"
 #include "statistics.h"
 #include "trial.h"
-#include "vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -141,6 +141,8 @@ static void add_row(const ck_Precision *precision, const ck_JournalRow *rows, in
     ck_csv_text(csv, rows[index].reason);
     for (int i = ERROR; i <= CPU_RANGE; i++) ck_csv_number(csv, values[i]);
     ck_csv_count(csv, is_on_front(precision, rows, index));
+    ck_csv_number(
+        csv, ck_rounding_share(&precision->comparison->model, values[DT], precision->cases[index].engine->is_single));
 }
 
 static void add_summary(const ck_Precision *precision, ck_Csv *csv, const ck_Engine *engine, const char *quantity,
@@ -215,15 +217,6 @@ static void summarise_costs(const ck_Precision *precision, const ck_JournalRow *
     }
 }
 
-// The rounding of a position, against what the field moves it by in a step, g*h^2: from 1 on nothing moves. NaN without
-// a field.
-static double rounding_at(const ck_Model *model, double dt, bool is_single) {
-    double field[3], farthest = 0;
-    ck_model_mean_field(model, field);
-    for (int i = 0; i < 3 * model->particle_count; i++) farthest = fmax(farthest, fabs(model->position[i]));
-    return ck_length(field) > 0 ? farthest * (is_single ? 0x1p-23 : 0x1p-52) / (ck_length(field) * dt * dt) : NAN;
-}
-
 // From how many substeps on finer steps make it worse: by half as much again, which the truth can tell.
 static void summarise_finest(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
                              ck_Csv *csv) {
@@ -236,12 +229,11 @@ static void summarise_finest(const ck_Precision *precision, const ck_JournalRow 
     double least = best < 0 ? NAN : fmax(rows[best].values[ERROR], precision->uncertainty);
     if (best < 0 || !(rows[finest].values[ERROR] > 1.5 * least)) return;
     char reason[200];
-    double rounding = rounding_at(&precision->comparison->model, rows[finest].values[DT], engine->is_single);
+    double rounding = ck_rounding_share(&precision->comparison->model, rows[finest].values[DT], engine->is_single);
     bool is_rounding = rounding > 0.1 * rows[finest].values[ERROR];
     snprintf(reason, sizeof reason,
              "finer steps make it worse, up to %.2g: %s; the spacing of its numbers is %.1g of what the field moves a "
-             "point by "
-             "in a step there",
+             "point by in a step there",
              rows[finest].values[ERROR], is_rounding ? "rounding from here on" : "by its method, not by rounding",
              rounding);
     add_summary(precision, csv, engine, is_rounding ? "finest_before_rounding" : "finest_useful_substeps", "1",

@@ -1,6 +1,7 @@
 #include "stability_study.h"
 
 #include "equilibrium.h"
+#include "rounding.h"
 #include "springs.h"
 #include "statistics.h"
 #include "time_scale.h"
@@ -407,6 +408,7 @@ void ck_stability_map_write(const ck_StabilityMap *map, const ck_JournalRow *row
         ck_csv_number(csv, critical);
         ck_csv_number(csv, values[PREDICTED]);
         ck_csv_number(csv, critical / values[PREDICTED]);
+        ck_csv_number(csv, ck_rounding_step(&map->comparison->model, one->engine->is_single));
     }
 }
 

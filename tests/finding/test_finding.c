@@ -31,11 +31,21 @@ static void write_table(const char *directory, ck_LayoutName name, const char *c
     fclose(file);
 }
 
-#define TABLE(directory, name, rows) write_table(directory, name, rows, sizeof(rows) / sizeof *(rows))
+typedef struct Table {
+    ck_LayoutName name;
+    const char *const (*rows)[10];
+    size_t count;
+} Table;
 
-static void find(ck_Findings *findings, char *directory) {
+#define TABLE(name, rows)                                                                                              \
+    { name, rows, sizeof(rows) / sizeof *(rows) }
+
+// Of a directory that holds these tables alone.
+static void find_in(ck_Findings *findings, const Table *tables, size_t count) {
+    char directory[] = "/tmp/clothcheck-test-XXXXXX", command[100];
     ck_Error error = {0};
-    char command[100];
+    assert_non_null(mkdtemp(directory));
+    for (size_t i = 0; i < count; i++) write_table(directory, tables[i].name, tables[i].rows, tables[i].count);
     if (ck_findings_read(findings, directory, &error)) fail_msg("%s", error.message);
     snprintf(command, sizeof command, "rm -r %s", directory);
     assert_int_equal(system(command), 0);
@@ -86,13 +96,9 @@ static void test_comparison(void **state) {
         {"scene=a", "engine=lacking", "quantity=spring damping", "wanted=0.5", "unit=N*s/m", "match=impossible"},
         {"scene=a", "engine=near", "quantity=spring damping", "wanted=0.5", "unit=N*s/m", "match=impossible"},
     };
-    char directory[] = "/tmp/clothcheck-test-XXXXXX";
+    const Table tables[] = {TABLE(CK_RUNS, runs), TABLE(CK_METRICS, metrics), TABLE(CK_LEDGER, ledger)};
     ck_Findings findings;
-    assert_non_null(mkdtemp(directory));
-    TABLE(directory, CK_RUNS, runs);
-    TABLE(directory, CK_METRICS, metrics);
-    TABLE(directory, CK_LEDGER, ledger);
-    find(&findings, directory);
+    find_in(&findings, tables, sizeof tables / sizeof *tables);
     assert_said(&findings, "breakdown", "one breaks down on a, b; on a: left the finite numbers");
     assert_said(&findings, "model",
                 "lacking has no spring damping (0.5 N*s/m), which may be why it is 2 % of the size off on a, where the "
@@ -133,13 +139,9 @@ static void test_silence(void **state) {
         {"scene=b", "engine=two", "quantity=friction", "wanted=1", "match=exact"},
         {"scene=b", "engine=lacking", "quantity=friction", "wanted=1", "match=impossible"},
     };
-    char directory[] = "/tmp/clothcheck-test-XXXXXX";
+    const Table tables[] = {TABLE(CK_RUNS, runs), TABLE(CK_METRICS, metrics), TABLE(CK_LEDGER, ledger)};
     ck_Findings findings;
-    assert_non_null(mkdtemp(directory));
-    TABLE(directory, CK_RUNS, runs);
-    TABLE(directory, CK_METRICS, metrics);
-    TABLE(directory, CK_LEDGER, ledger);
-    find(&findings, directory);
+    find_in(&findings, tables, sizeof tables / sizeof *tables);
     assert_int_equal(findings.count, 0);
     ck_findings_free(&findings);
 }
@@ -153,6 +155,10 @@ static void test_precision(void **state) {
         {"scene=a", "engine=helped", "substeps=4", "iterations=16", "error=0.002", "cpu_s=3"},
         {"scene=a", "engine=good", "substeps=4", "iterations=1", "error=0.0002", "cpu_s=1"},
         {"scene=a", "engine=good", "substeps=4", "iterations=16", "error=0.0002", "cpu_s=3"},
+        {"scene=a", "engine=lost", "substeps=8", "iterations=1", "error=0.8", "cpu_s=1", "rounding=2"},
+        {"scene=a", "engine=lost", "substeps=4", "iterations=1", "error=0.5", "cpu_s=1", "rounding=0.5"},
+        {"scene=a", "engine=lost", "substeps=4", "iterations=16", "error=0.5", "cpu_s=3", "rounding=0.5"},
+        {"scene=a", "engine=lost", "substeps=2", "iterations=1", "error=0.02", "cpu_s=1", "rounding=0.1"},
     };
     static const char *const summary[][10] = {
         {"scene=a", "engine=jolt", "quantity=finest_before_rounding", "value=4",
@@ -161,12 +167,9 @@ static void test_precision(void **state) {
          "reason=finer steps are worse: by its method, not by rounding"},
         {"scene=a", "engine=bars", "quantity=floor", "value=9"},
     };
-    char directory[] = "/tmp/clothcheck-test-XXXXXX";
+    const Table tables[] = {TABLE(CK_PRECISION, rows), TABLE(CK_PRECISION_SUMMARY, summary)};
     ck_Findings findings;
-    assert_non_null(mkdtemp(directory));
-    TABLE(directory, CK_PRECISION, rows);
-    TABLE(directory, CK_PRECISION_SUMMARY, summary);
-    find(&findings, directory);
+    find_in(&findings, tables, sizeof tables / sizeof *tables);
     assert_said(&findings, "setting",
                 "one on a: 16 iterations in place of 1, at 4 substeps a frame, cost 3 times as much, and the error is "
                 "2 % where it was 2.1 %");
@@ -175,12 +178,61 @@ static void test_precision(void **state) {
     assert_said(&findings, "setting",
                 "bars on a: more than 9 substeps a frame are no use: finer steps are worse: by its method, not by "
                 "rounding");
-    assert_int_equal(findings.count, 3);
+    assert_said(&findings, "rounding",
+                "lost on a: at 4 substeps a frame a step falls by 2 of the spacing of its numbers, and it is 50 % off; "
+                "finer steps move nothing");
+    assert_int_equal(findings.count, 4);
+    ck_findings_free(&findings);
+}
+
+// Of stability, needs and speed.
+static void test_studies(void **state) {
+    (void)state;
+    static const char *const stability[][10] = {
+        {"scene=a", "engine=slow", "case=critical", "damping=scene", "stiffness_factor=1", "critical_step_s=0.005",
+         "ratio=1.01"},
+        {"scene=a", "engine=fast", "case=critical", "damping=scene", "stiffness_factor=1", "critical_step_s=0.001",
+         "ratio=0.7"},
+        {"scene=a", "engine=slow", "case=critical", "damping=none", "stiffness_factor=1", "critical_step_s=0.009",
+         "ratio=0.1"},
+        {"scene=a", "engine=slow", "case=map", "damping=scene", "stiffness_factor=1", "time_step_s=0.01"},
+        {"scene=a", "engine=never", "case=critical", "damping=scene", "stiffness_factor=1"},
+    };
+    static const char *const needs[][10] = {
+        {"scene=a", "engine=one", "left_out=drag", "metric=sag", "matters=no", "tolerance=0.01", "cpu_with_s=3",
+         "cpu_without_s=1.5"},
+        {"scene=a", "engine=one", "left_out=drag", "metric=stretch_max", "matters=no", "tolerance=0.01", "cpu_with_s=3",
+         "cpu_without_s=1.5"},
+        {"scene=a", "engine=one", "left_out=shear", "metric=sag", "matters=yes", "tolerance=0.01"},
+        {"scene=a", "engine=one", "left_out=shear", "metric=stretch_max", "matters=no", "tolerance=0.01"},
+        {"scene=a", "engine=one", "left_out=bend", "metric=sag", "matters=no", "status=diverged"},
+    };
+    static const char *const bench[][10] = {
+        {"body=cloth", "particles=400", "engine=peer", "setup=4 sweeps", "metric=update_over_native", "value=5",
+         "low=4", "high=6"},
+        {"body=cloth", "particles=4096", "engine=peer", "setup=4 sweeps", "metric=update_over_native", "value=9",
+         "low=8", "high=10"},
+        {"body=cloth", "particles=4096", "engine=like", "setup=", "metric=update_over_native", "value=1.3", "low=1.1",
+         "high=1.5"},
+        {"body=rope", "particles=4096", "engine=peer", "setup=", "metric=update_over_native", "value=9", "low=8",
+         "high=10"},
+    };
+    const Table tables[] = {TABLE(CK_STABILITY, stability), TABLE(CK_NEEDS, needs), TABLE(CK_BENCH, bench)};
+    ck_Findings findings;
+    find_in(&findings, tables, sizeof tables / sizeof *tables);
+    assert_said(&findings, "breakdown", "on a longer steps than these blow up: fast 1 ms, slow 5 ms");
+    assert_said(&findings, "breakdown", "fast on a: its longest stable step is 1 ms, 0.7 of that of its theory");
+    assert_said(&findings, "model",
+                "a can do without 'drag': no metric moves by more than 0.01, and one takes 0.5 of the time without");
+    assert_said(&findings, "cost",
+                "peer, 4 sweeps takes 9 times as long for a spring and sweep as the native solver of its kind (8 to "
+                "10), on a cloth of 4096 particles");
+    assert_int_equal(findings.count, 4);
     ck_findings_free(&findings);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_comparison), cmocka_unit_test(test_silence),
-                                       cmocka_unit_test(test_precision)};
+                                       cmocka_unit_test(test_precision), cmocka_unit_test(test_studies)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,8 +39,9 @@ int ck_chart_select_precision(const ck_ReportData *data, const char *scene, FILE
     for (int row = 0; table && row < table->row_count; row++) {
         double error = ck_csv_number_of(table, row, "error"), cost = ck_csv_number_of(table, row, "cpu_s");
         if (!ck_report_is_of(table, row, scene) || !is_drawn(error) || error > MOST_ERROR || !is_drawn(cost)) continue;
-        fprintf(out, "%s,%.9g,%.9g,%d,%d,%.9g\n", ck_csv_text_of(table, row, "engine"), cost, error,
-                is_on_own_front(table, row), ck_csv_number_of(table, row, "on_front") > 0, uncertainty_of(data, scene));
+        fprintf(out, "%s,%.9g,%.9g,%d,%d,%.9g,%.9g\n", ck_csv_text_of(table, row, "engine"), cost, error,
+                is_on_own_front(table, row), ck_csv_number_of(table, row, "on_front") > 0, uncertainty_of(data, scene),
+                ck_csv_number_of(table, row, "rounding"));
         rows++;
     }
     return rows;
@@ -82,9 +83,10 @@ int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE
             strcmp(ck_csv_text_of(table, row, "damping"), "scene"))
             continue;
         if (!strcmp(status, "unsupported") || !strcmp(status, "refused")) continue;
-        fprintf(out, "%s,%.9g,%.9g,%s,%.9g,%g\n", ck_csv_text_of(table, row, "engine"), step,
+        fprintf(out, "%s,%.9g,%.9g,%s,%.9g,%g,%.9g\n", ck_csv_text_of(table, row, "engine"), step,
                 ck_csv_number_of(table, row, "stiffness_factor"), is_cell ? status : "critical",
-                ck_csv_number_of(table, row, "predicted_step_s"), ck_csv_number_of(table, row, "iterations"));
+                ck_csv_number_of(table, row, "predicted_step_s"), ck_csv_number_of(table, row, "iterations"),
+                ck_csv_number_of(table, row, "rounding_step_s"));
         rows++;
     }
     return rows;
