@@ -31,12 +31,12 @@ function parseHeader(text) {
 		if (key === "path") header.paths.push(words[0]);
 		else if (key === "plane") header.planes.push(words.map(Number));
 		else if (key === "sphere") header.spheres.push(words.map(Number));
-		else if (["columns", "particles", "springs", "frames"].includes(key)) header[key] = Number(words[0]);
+		else if (["columns", "particles", "springs", "triangles", "frames"].includes(key)) header[key] = Number(words[0]);
 	}
 	return header;
 }
 
-// {columns, particles, planes, spheres, times, springs, rests, paths: Map of name to positions}
+// {columns, particles, planes, spheres, times, springs, rests, triangles, paths: Map of name to positions}
 function parseReplay(buffer) {
 	const bytes = new Uint8Array(buffer);
 	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 8192));
@@ -52,6 +52,7 @@ function parseReplay(buffer) {
 	replay.times = take(Float32Array, replay.frames);
 	replay.springs = take(Int32Array, 2 * replay.springs);
 	replay.rests = take(Float32Array, replay.springs.length / 2);
+	replay.triangles = take(Int32Array, 3 * replay.triangles);
 	replay.paths = new Map();
 	const width = 3 * replay.particles, count = replay.frames * width;
 	let first = null;

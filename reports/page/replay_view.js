@@ -8,9 +8,9 @@ function strainColor(share, out, at) {
 	out[at + 2] = 0.8 - 0.7 * s;
 }
 
-// Two triangles for each square of a cloth.
-function clothTriangles(replay) {
-	const { columns, particles } = replay, triangles = [];
+// A mesh's own triangles, and two for each square of a cloth.
+function bodyTriangles(replay) {
+	const { columns, particles } = replay, triangles = [...replay.triangles];
 	for (let i = 0; columns > 1 && i + columns + 1 < particles; i++) {
 		if (i % columns === columns - 1) continue;
 		triangles.push(i, i + columns, i + 1, i + 1, i + columns, i + columns + 1);
@@ -49,7 +49,7 @@ function makeBody(replay, ghost) {
 	const colors = ghost ? null : new THREE.BufferAttribute(new Float32Array(3 * replay.particles), 3);
 	const look = ghost ? { color: 0x555555, transparent: true, opacity: 0.45 } : { vertexColors: THREE.VertexColors };
 	const group = new THREE.Group();
-	const triangles = clothTriangles(replay);
+	const triangles = bodyTriangles(replay);
 	const isSurface = triangles.length > 0 && !ghost;
 	if (isSurface) {
 		const surface = new THREE.MeshBasicMaterial({ ...look, side: THREE.DoubleSide, polygonOffset: true,

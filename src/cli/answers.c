@@ -24,8 +24,10 @@ static bool is_ranked(const ck_Arguments *arguments, const char *engine) {
     return !arguments->rank_without || fnmatch(arguments->rank_without, engine, 0);
 }
 
-// The engines that came to their end and are within 1 %, the cheapest first.
-static int find_candidates(const ck_Arguments *arguments, const ck_Comparison *comparison, Candidate *found) {
+// The engines that came to their end and are within an error, the cheapest first. None is nearer than the truth is
+// known.
+static int find_candidates(const ck_Arguments *arguments, const ck_Comparison *comparison, double within,
+                           double uncertainty, Candidate *found) {
     const ck_Metric *position = ck_metric_find("position_rms");
     int count = 0;
     for (int i = 0; i < comparison->run_count; i++) {
@@ -35,8 +37,9 @@ static int find_candidates(const ck_Arguments *arguments, const ck_Comparison *c
             continue;
         double simulated = run->timing.frames * run->model->step,
                error = ck_metric_value(position, run->model, &run->trajectory, &comparison->truth.reference);
-        if (error <= 0.01 && run->timing.repeat_count)
-            found[count++] = (Candidate){run->engine, error, 1e3 * ck_timing_median(&run->timing) / simulated};
+        if (error <= within && run->timing.repeat_count)
+            found[count++] =
+                (Candidate){run->engine, fmax(error, uncertainty), 1e3 * ck_timing_median(&run->timing) / simulated};
     }
     qsort(found, (size_t)count, sizeof *found, compare_costs);
     return count;
@@ -51,13 +54,17 @@ void ck_answer_cheapest(ck_Arguments *arguments, const ck_Comparison *comparison
                        "%s: no truth knows its positions; look at what the engines agree on: the page shows it", name);
         return;
     }
-    int count = find_candidates(arguments, comparison, found), timed = 0;
+    double known = ck_truth_uncertainty(&comparison->truth, &comparison->model, ck_metric_find("position_rms"));
+    if (isnan(known)) known = 0;
+    const double within = fmax(0.01, known);
+    int count = find_candidates(arguments, comparison, within, known, found), timed = 0;
     for (int i = 0; i < comparison->run_count; i++) timed += comparison->runs[i].timing.repeat_count > 0;
     if (!timed) return;
     if (!count) {
-        ck_answer_line(answer, CK_ANSWER_SAYS,
-                       "%s: no engine that was timed is within 1 %% of the truth; 'clothcheck precision' refines them",
-                       name);
+        ck_answer_line(
+            answer, CK_ANSWER_SAYS,
+            "%s: no engine that was timed is within %.2g %% of the truth; 'clothcheck precision' refines them", name,
+            100 * within);
         return;
     }
     char next[100] = "";
@@ -65,8 +72,9 @@ void ck_answer_cheapest(ck_Arguments *arguments, const ck_Comparison *comparison
         snprintf(next, sizeof next, "; next %s: %.2g %%, %.2g times as long", found[1].engine->name,
                  100 * found[1].error, found[1].cost / found[0].cost);
     ck_answer_line(answer, CK_ANSWER_SAYS,
-                   "%s: the cheapest within 1 %% of the truth is %s: %.2g %% off, %.3g ms a simulated second%s", name,
-                   found[0].engine->name, 100 * found[0].error, found[0].cost, next);
+                   "%s: the cheapest within %.2g %% of the truth%s is %s: %.2g %% off, %.3g ms a simulated second%s",
+                   name, 100 * within, known > 0.01 ? ", which is not known better," : "", found[0].engine->name,
+                   100 * found[0].error, found[0].cost, next);
 }
 
 static double value_of(const char *metric, const ck_Run *run, const ck_Model *model, const ck_Reference *reference) {

@@ -38,8 +38,10 @@ static void write_header(FILE *file, const ck_Comparison *comparison, int frames
     int springs = 0, paths = has_truth + stay;
     for (int i = 0; i < model->spring_count; i++) springs += is_drawn(&model->springs[i]);
     for (int i = 0; i < comparison->run_count; i++) paths += comparison->runs[i].trajectory.frame_count > 0;
-    fprintf(file, "clothcheck replay 1\nscene %s\ncolumns %d\nparticles %d\nsprings %d\nframes %d\npaths %d\n",
-            model->name, model->columns, model->particle_count, springs, frames, paths);
+    fprintf(file,
+            "clothcheck replay 1\nscene %s\ncolumns %d\nparticles %d\nsprings %d\ntriangles %d\nframes %d\n"
+            "paths %d\n",
+            model->name, model->columns, model->particle_count, springs, model->triangle_count, frames, paths);
     for (int i = 0; i < stay; i++) fprintf(file, "path %.*s\n", (int)strcspn(names[i], "\n"), names[i]);
     for (int i = 0; i < comparison->run_count; i++)
         if (comparison->runs[i].trajectory.frame_count > 0)
@@ -61,7 +63,7 @@ static void write_float(FILE *file, double number) {
     fwrite(&value, sizeof value, 1, file);
 }
 
-static void write_springs(FILE *file, const ck_Model *model) {
+static void write_body(FILE *file, const ck_Model *model) {
     for (int i = 0; i < model->spring_count; i++)
         if (is_drawn(&model->springs[i])) {
             const int32_t ends[2] = {model->springs[i].a, model->springs[i].b};
@@ -69,6 +71,10 @@ static void write_springs(FILE *file, const ck_Model *model) {
         }
     for (int i = 0; i < model->spring_count; i++)
         if (is_drawn(&model->springs[i])) write_float(file, model->springs[i].rest);
+    for (int i = 0; i < 3 * model->triangle_count; i++) {
+        const int32_t corner = model->triangles[i / 3][i % 3];
+        fwrite(&corner, sizeof corner, 1, file);
+    }
 }
 
 // A truth at rest has a single frame, which stands for all times.
@@ -96,7 +102,7 @@ static void write_all(FILE *file, const ck_Comparison *comparison) {
     int frames = (model->frame_count + stride - 1) / stride + 1;
     write_header(file, comparison, frames, 0, NULL);
     for (int i = 0; i < frames; i++) write_float(file, kept_frame(model, stride, i) * model->step);
-    write_springs(file, model);
+    write_body(file, model);
     write_paths(file, comparison, stride, frames);
 }
 
@@ -123,7 +129,7 @@ static int find_staying(const ck_Replay *old, const ck_Comparison *comparison, c
 static void write_joined(FILE *file, const ck_Comparison *comparison, const ck_Replay *old) {
     const char *names[CK_REPLAY_MAX_PATHS];
     int numbers[CK_REPLAY_MAX_PATHS], stay = find_staying(old, comparison, names, numbers);
-    size_t front = (size_t)old->frame_count * sizeof(float) + ck_replay_spring_bytes(old);
+    size_t front = (size_t)old->frame_count * sizeof(float) + ck_replay_body_bytes(old);
     size_t path_bytes = ck_replay_path_numbers(old) * sizeof(float);
     const char *data = old->bytes + old->header_size;
     const ck_Model *model = &comparison->model;

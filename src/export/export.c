@@ -49,6 +49,10 @@ static json_t *spring_of(const ck_Spring *spring) {
                      spring->stiffness, "damping", spring->damping, "kind", ck_export_kinds[spring->kind]);
 }
 
+static json_t *triangle_of(const int *corners) {
+    return json_pack("[i, i, i]", corners[0], corners[1], corners[2]);
+}
+
 static json_t *collider_of(const ck_Collider *collider) {
     if (collider->shape == CK_SPHERE)
         return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(collider->point), "radius",
@@ -63,6 +67,8 @@ static void put_network(Writer *writer, const ck_Model *model) {
     for (int i = 0; i < model->particle_count; i++) put(writer, i ? ",\n  " : "\n  ", node_of(model, i), "");
     fprintf(writer->out, "],\n \"springs\": [");
     for (int i = 0; i < model->spring_count; i++) put(writer, i ? ",\n  " : "\n  ", spring_of(&model->springs[i]), "");
+    for (int i = 0; i < model->triangle_count; i++)
+        put(writer, i ? ",\n  " : "],\n \"triangles\": [\n  ", triangle_of(model->triangles[i]), "");
     fprintf(writer->out, "]}");
 }
 
@@ -122,7 +128,8 @@ ck_Status ck_export_json(FILE *out, const ck_Model *model, ck_Error *error) {
 }
 
 ck_Status ck_export_obj(FILE *out, const ck_Model *model, ck_Error *error) {
-    fprintf(out, "# %s: metres; springs are lines, cells of a cloth are faces\no %s\n", model->name, model->name);
+    fprintf(out, "# %s: metres; springs are lines, or cells of a cloth and triangles of a mesh are faces\no %s\n",
+            model->name, model->name);
     for (int i = 0; i < model->particle_count; i++)
         fprintf(out, "v %.17g %.17g %.17g\n", model->position[3 * i], model->position[3 * i + 1],
                 model->position[3 * i + 2]);
@@ -132,7 +139,10 @@ ck_Status ck_export_obj(FILE *out, const ck_Model *model, ck_Error *error) {
             int first = row * columns + column + 1;
             fprintf(out, "f %d %d %d %d\n", first, first + columns, first + columns + 1, first + 1);
         }
-    for (int i = 0; i < model->spring_count && !rows; i++)
+    for (int i = 0; i < model->triangle_count; i++)
+        fprintf(out, "f %d %d %d\n", model->triangles[i][0] + 1, model->triangles[i][1] + 1,
+                model->triangles[i][2] + 1);
+    for (int i = 0; i < model->spring_count && !rows && !model->triangle_count; i++)
         if (model->springs[i].kind == CK_STRUCTURAL)
             fprintf(out, "l %d %d\n", model->springs[i].a + 1, model->springs[i].b + 1);
     return end_of(out, error);

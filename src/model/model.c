@@ -159,8 +159,8 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
         {"springs.damping", springs->damping, springs->rigid, "rigid bars do not stretch, so that it damps nothing"},
         {"springs.shear", springs->shear, model->body != CK_CLOTH,
          "only a cloth has diagonals; add bars to a network, or leave it out"},
-        {"springs.bend", springs->bend, model->body == CK_NETWORK,
-         "only a cloth and a rope bend; add bars to a network, or leave it out"},
+        {"springs.bend", springs->bend, model->body == CK_NETWORK || model->body == CK_MESH,
+         "only a cloth and a rope have second neighbours; leave it out"},
         {"springs.damping", springs->damping, is_none, "there is no spring; give a stiffness, or leave it out"},
         {"springs.prestretch", springs->prestretch, is_none, "there is no spring; give a stiffness, or leave it out"},
         {"springs.stiffness", springs->stiffness, lacks_bars,
@@ -270,6 +270,12 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
 void ck_model_free(ck_Model *model) {
     for (int i = 0; i < model->release_count; i++) free(model->releases[i].particles);
     for (int i = 0; i < model->measure_count; i++) free(model->measure[i]);
+    for (int i = 0; i < model->group_count; i++) {
+        free(model->groups[i].name);
+        free(model->groups[i].particles);
+    }
+    free(model->groups);
+    free(model->triangles);
     free(model->releases);
     free(model->measure);
     free(model->colliders);

@@ -59,7 +59,13 @@ typedef struct ck_Release {
     int particle_count;
 } ck_Release;
 
-typedef enum ck_Body { CK_CLOTH, CK_ROPE, CK_NETWORK } ck_Body;
+typedef enum ck_Body { CK_CLOTH, CK_ROPE, CK_NETWORK, CK_MESH } ck_Body;
+
+// Particles that a mesh's file names together.
+typedef struct ck_Group {
+    char *name;
+    int *particles, particle_count;
+} ck_Group;
 
 typedef struct ck_Model {
     char *name;
@@ -74,6 +80,10 @@ typedef struct ck_Model {
     int pin_count;
     ck_Spring *springs;
     int spring_count;
+    int (*triangles)[3]; // [triangle_count] particles of a mesh's faces, else none
+    int triangle_count;
+    ck_Group *groups; // of a mesh
+    int group_count;
     double gravity[3], force[3]; // m/s², N on each particle
     double drag;                 // 1/s
     ck_Collider *colliders;
@@ -81,8 +91,8 @@ typedef struct ck_Model {
     ck_Release *releases;
     int release_count;
     unsigned terms;        // ck_Term bits in use
-    double size;           // m: rope's rest length, cloth's longer rest side, network's bounding box diagonal
-    double spacing;        // m: between neighbours; of a network its shortest bar
+    double size;           // m: rope's rest length, cloth's longer rest side, else the bounding box's diagonal
+    double spacing;        // m: between neighbours; of a network or mesh its shortest spring
     double duration, step; // s
     int frame_count;       // frames after the start
     char *truth;           // as the scene names it; NULL: none

@@ -15,8 +15,8 @@
 // A page looks for the end of the header in so many bytes.
 #define MOST_HEADER 8192
 
-size_t ck_replay_spring_bytes(const ck_Replay *replay) {
-    return (size_t)replay->spring_count * 3 * sizeof(float);
+size_t ck_replay_body_bytes(const ck_Replay *replay) {
+    return ((size_t)replay->spring_count + (size_t)replay->triangle_count) * 3 * sizeof(float);
 }
 
 size_t ck_replay_path_numbers(const ck_Replay *replay) {
@@ -86,6 +86,7 @@ static bool read_header(ck_Replay *replay, const char *scene) {
     if (!read_count(&line, "columns", 0, most, &columns) ||
         !read_count(&line, "particles", 1, most, &replay->particle_count) ||
         !read_count(&line, "springs", 0, most, &replay->spring_count) ||
+        !read_count(&line, "triangles", 0, most, &replay->triangle_count) ||
         !read_count(&line, "frames", 1, most, &replay->frame_count) ||
         !read_count(&line, "paths", 0, CK_REPLAY_MAX_PATHS, &replay->path_count))
         return false;
@@ -98,22 +99,28 @@ static bool read_header(ck_Replay *replay, const char *scene) {
     return replay->header_size <= MOST_HEADER;
 }
 
-// True where the file has the size that its header says, and springs are between its particles.
+static bool are_particles(const ck_Replay *replay, const char *at, int count) {
+    for (int i = 0; i < count; i++, at += sizeof(int32_t)) {
+        int32_t particle;
+        memcpy(&particle, at, sizeof particle);
+        if (particle < 0 || particle >= replay->particle_count) return false;
+    }
+    return true;
+}
+
+// True where the file has the size that its header says, and springs and triangles are of its particles.
 static bool is_sound(const ck_Replay *replay) {
     size_t numbers = (size_t)replay->frame_count + (size_t)replay->path_count * ck_replay_path_numbers(replay);
-    if (replay->size != replay->header_size + numbers * sizeof(float) + ck_replay_spring_bytes(replay)) return false;
+    if (replay->size != replay->header_size + numbers * sizeof(float) + ck_replay_body_bytes(replay)) return false;
     const char *at = replay->bytes + replay->header_size;
     for (int i = 0; i < replay->frame_count; i++, at += sizeof(float)) {
         float time;
         memcpy(&time, at, sizeof time);
         if (!isfinite(time)) return false;
     }
-    for (int i = 0; i < 2 * replay->spring_count; i++, at += sizeof(int32_t)) {
-        int32_t end;
-        memcpy(&end, at, sizeof end);
-        if (end < 0 || end >= replay->particle_count) return false;
-    }
-    return true;
+    const char *triangles = at + (size_t)replay->spring_count * 3 * sizeof(float);
+    return are_particles(replay, at, 2 * replay->spring_count) &&
+           are_particles(replay, triangles, 3 * replay->triangle_count);
 }
 
 ck_Status ck_replay_read(ck_Replay *replay, const char *directory, const char *scene, ck_Error *error) {

@@ -6,6 +6,7 @@
 //     columns 20                       of a cloth: particle = row*columns + column; else 0
 //     particles 400
 //     springs 760
+//     triangles 0                      of a mesh; else 0
 //     frames 61
 //     paths 12
 //     path native-verlet               one a path, in their order; "truth" where there is one
@@ -13,7 +14,7 @@
 //     sphere 0 -1 0 0.3                and of these: centre and radius, m
 //     data
 // and goes on with little-endian numbers: times [frames] float32, s; structural springs [springs][2] int32; their rest
-// lengths [springs] float32, m; positions [paths][frames][particles][3] float32, m, NaN after a run's last frame.
+// lengths [springs] float32, m; triangles [triangles][3] int32; positions [paths][frames][particles][3] float32, m, NaN after a run's last frame.
 #ifndef CK_REPLAY_FILE_H
 #define CK_REPLAY_FILE_H
 
@@ -29,7 +30,7 @@
 typedef struct ck_Replay {
     char *bytes; // of the file; owned
     size_t size, header_size;
-    int particle_count, spring_count, frame_count, path_count;
+    int particle_count, spring_count, triangle_count, frame_count, path_count;
 } ck_Replay;
 
 // The file of a scene in its directory. NULL when out of memory. Free the result.
@@ -41,8 +42,8 @@ ck_Status ck_replay_read(ck_Replay *replay, const char *directory, const char *s
 // Accepts a zeroed replay.
 void ck_replay_free(ck_Replay *replay);
 
-// The bytes of the springs and their rest lengths, and the numbers in a path's positions.
-size_t ck_replay_spring_bytes(const ck_Replay *replay);
+// The bytes of springs, their rest lengths and triangles, and the numbers in a path's positions.
+size_t ck_replay_body_bytes(const ck_Replay *replay);
 size_t ck_replay_path_numbers(const ck_Replay *replay);
 
 #endif

@@ -83,7 +83,7 @@ ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *er
                          parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
     else if (!yaml_document_get_root_node(&document->yaml))
         status = ck_fail(error, CK_BAD_INPUT,
-                         "%s:1:1: is empty; a scene needs name, a body (cloth, rope or network) and time", path);
+                         "%s:1:1: is empty; a scene needs name, a body (cloth, rope, network or mesh) and time", path);
     yaml_parser_delete(&parser);
     return status;
 }

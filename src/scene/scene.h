@@ -25,6 +25,14 @@ typedef struct ck_SceneRope {
     double *origin, *along;         // [3]; NULL: (0, 0, 0) and (0, −1, 0)
 } ck_SceneRope;
 
+typedef struct ck_SceneMesh {
+    char *file;           // beside the scene's
+    double mass, density; // kg of the whole, or kg/m²: one of the two
+    double weld, scale;   // m; m of one of the file's units, 0: 1
+    char *up;             // x, y or z; NULL: y
+    double *origin;       // [3] m, added to all; NULL: none
+} ck_SceneMesh;
+
 typedef struct ck_SceneNode {
     double at[3];     // m
     double mass;      // kg
@@ -46,6 +54,8 @@ typedef struct ck_SceneNetwork {
     uint32_t bars_count;
     ck_SceneNetworkSpring *springs;
     uint32_t springs_count;
+    uint32_t (*triangles)[3]; // faces, which are drawn
+    uint32_t triangles_count;
     double size, spacing; // m; 0: those of its nodes and springs
 } ck_SceneNetwork;
 
@@ -103,6 +113,7 @@ typedef struct ck_SceneFile {
     ck_SceneCloth *cloth;
     ck_SceneRope *rope;
     ck_SceneNetwork *network;
+    ck_SceneMesh *mesh;
     ck_SceneSprings *springs;
     char **pins;
     uint32_t pins_count;

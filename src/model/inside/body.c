@@ -20,8 +20,8 @@ ck_Status ck_model_unit(double *out, const double *from, const ck_Scene *scene, 
     return CK_OK;
 }
 
-static ck_Status allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
-                          ck_Error *error) {
+ck_Status ck_body_allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
+                           ck_Error *error) {
     if (particles < 1 || particles > CK_SCENE_MAX_PARTICLES)
         return ck_scene_fail(scene, body, error, "%s asks for %.0f particles; it must be 1 to %d", body, particles,
                              CK_SCENE_MAX_PARTICLES);
@@ -38,9 +38,8 @@ static ck_Status allocate(ck_Model *model, const ck_Scene *scene, const char *bo
     return whole ? CK_OK : CK_NO_MEMORY;
 }
 
-// adds a spring unless its stiffness is 0, which models none
-static void add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, int b, double length,
-                       ck_SpringKind kind) {
+void ck_body_add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, int b, double length,
+                        ck_SpringKind kind) {
     const double stiffness[CK_SPRING_KINDS] = {springs->stiffness, springs->shear, springs->bend};
     bool bar = springs->rigid && (kind == CK_STRUCTURAL || stiffness[kind] > 0);
     if (!bar && !(stiffness[kind] > 0)) return;
@@ -62,7 +61,7 @@ static ck_Status build_rope(ck_Model *model, const ck_Scene *scene, ck_Error *er
     const ck_SceneRope *rope = scene->file->rope;
     double along[3];
     ck_Status status = ck_model_unit(along, or_default(rope->along, down_default), scene, "rope.along", error);
-    if (!status) status = allocate(model, scene, "rope", rope->particles, 2.0 * rope->particles, error);
+    if (!status) status = ck_body_allocate(model, scene, "rope", rope->particles, 2.0 * rope->particles, error);
     if (status) return status;
     for (int i = 0; i < model->particle_count; i++) {
         memcpy(model->position + 3 * i, or_default(rope->origin, origin_default), 3 * sizeof(double));
@@ -75,9 +74,9 @@ static ck_Status build_rope(ck_Model *model, const ck_Scene *scene, ck_Error *er
     model->size = rope->particles > 1 ? rope->spacing * (rope->particles - 1) : rope->spacing;
     const ck_SceneSprings *springs = scene->file->springs;
     for (int i = 1; i < model->particle_count && springs; i++)
-        add_spring(model, springs, i - 1, i, rope->spacing, CK_STRUCTURAL);
+        ck_body_add_spring(model, springs, i - 1, i, rope->spacing, CK_STRUCTURAL);
     for (int i = 2; i < model->particle_count && springs; i++)
-        add_spring(model, springs, i - 2, i, 2 * rope->spacing, CK_BEND);
+        ck_body_add_spring(model, springs, i - 2, i, 2 * rope->spacing, CK_BEND);
     return CK_OK;
 }
 
@@ -98,8 +97,8 @@ static void add_cloth_springs(ck_Model *model, const ck_SceneCloth *cloth, const
             for (int column = 0; column < columns; column++) {
                 int to_row = row + cloth_springs[s].row, to_column = column + cloth_springs[s].column;
                 if (to_row >= rows || to_column >= columns || to_column < 0) continue;
-                add_spring(model, springs, row * columns + column, to_row * columns + to_column, length,
-                           cloth_springs[s].kind);
+                ck_body_add_spring(model, springs, row * columns + column, to_row * columns + to_column, length,
+                                   cloth_springs[s].kind);
             }
     }
 }
@@ -113,7 +112,7 @@ static ck_Status build_cloth(ck_Model *model, const ck_Scene *scene, ck_Error *e
     if (fabs(ck_dot(across, down)) > 1e-9)
         return ck_scene_fail(scene, "cloth", error, "cloth.across and cloth.down must be at right angles");
     double particles = (double)cloth->rows * cloth->columns;
-    status = allocate(model, scene, "cloth", particles, CLOTH_SPRINGS * particles, error);
+    status = ck_body_allocate(model, scene, "cloth", particles, CLOTH_SPRINGS * particles, error);
     if (status) return status;
     for (int i = 0; i < model->particle_count; i++) {
         double *position = model->position + 3 * i;
@@ -159,7 +158,7 @@ static ck_Status build_bars(ck_Model *model, const ck_Scene *scene, ck_Error *er
         if (status) return status;
         int a = (int)network->bars[i][0], b = (int)network->bars[i][1];
         double length = ck_distance(model->position + 3 * a, model->position + 3 * b);
-        add_spring(model, springs, a, b, length, CK_STRUCTURAL);
+        ck_body_add_spring(model, springs, a, b, length, CK_STRUCTURAL);
     }
     return CK_OK;
 }
@@ -195,14 +194,13 @@ static ck_Status add_own_spring(ck_Model *model, const ck_Scene *scene, uint32_t
     return CK_OK;
 }
 
-// Lengths of a network: what it says of them, or what its nodes and springs are.
-static void set_lengths(ck_Model *model, const ck_SceneNetwork *network) {
+void ck_body_set_lengths(ck_Model *model, double size, double spacing) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int i = 0; i < 3 * model->particle_count; i++) {
         low[i % 3] = fmin(low[i % 3], model->position[i]);
         high[i % 3] = fmax(high[i % 3], model->position[i]);
     }
-    model->size = network->size > 0 ? network->size : ck_distance(low, high);
+    model->size = size > 0 ? size : ck_distance(low, high);
     if (!(model->size > 0)) model->size = 1; // a single node has no extent of its own
     model->spacing = model->spring_count ? INFINITY : model->size;
     for (int i = 0; i < model->spring_count; i++) {
@@ -210,13 +208,36 @@ static void set_lengths(ck_Model *model, const ck_SceneNetwork *network) {
         model->spacing =
             fmin(model->spacing, ck_distance(model->position + 3 * spring->a, model->position + 3 * spring->b));
     }
-    if (network->spacing > 0) model->spacing = network->spacing;
+    if (spacing > 0) model->spacing = spacing;
+}
+
+static ck_Status build_triangles(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_SceneNetwork *network = scene->file->network;
+    if (!network->triangles_count) return CK_OK;
+    model->triangles = malloc(network->triangles_count * sizeof *model->triangles);
+    if (!model->triangles) return CK_NO_MEMORY;
+    for (uint32_t i = 0; i < network->triangles_count; i++) {
+        const uint32_t *corners = network->triangles[i];
+        char path[48];
+        snprintf(path, sizeof path, "network.triangles[%u]", i);
+        for (int k = 0; k < 3; k++) {
+            if (corners[k] >= (uint32_t)model->particle_count)
+                return ck_scene_fail(scene, path, error,
+                                     "triangle of node %u, which does not exist; the nodes are 0 to %d", corners[k],
+                                     model->particle_count - 1);
+            if (corners[k] == corners[(k + 1) % 3])
+                return ck_scene_fail(scene, path, error, "triangle that has node %u twice; it joins three", corners[k]);
+            model->triangles[i][k] = (int)corners[k];
+        }
+        model->triangle_count++;
+    }
+    return CK_OK;
 }
 
 static ck_Status build_network(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneNetwork *network = scene->file->network;
     double springs = (double)network->bars_count + network->springs_count;
-    ck_Status status = allocate(model, scene, "network", network->nodes_count, springs, error);
+    ck_Status status = ck_body_allocate(model, scene, "network", network->nodes_count, springs, error);
     if (status) return status;
     for (int i = 0; i < model->particle_count; i++) {
         memcpy(model->position + 3 * i, network->nodes[i].at, 3 * sizeof(double));
@@ -225,7 +246,8 @@ static ck_Status build_network(ck_Model *model, const ck_Scene *scene, ck_Error 
     model->body = CK_NETWORK;
     status = build_bars(model, scene, error);
     for (uint32_t i = 0; i < network->springs_count && !status; i++) status = add_own_spring(model, scene, i, error);
-    if (!status) set_lengths(model, network);
+    if (!status) ck_body_set_lengths(model, network->size, network->spacing);
+    if (!status) status = build_triangles(model, scene, error);
     return status;
 }
 
@@ -287,61 +309,6 @@ void ck_model_add_noise(ck_Model *model, const ck_Scene *scene) {
 ck_Status ck_model_build_body(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     if (scene->file->cloth) return build_cloth(model, scene, error);
     if (scene->file->rope) return build_rope(model, scene, error);
+    if (scene->file->mesh) return ck_model_build_mesh(model, scene, error);
     return build_network(model, scene, error);
-}
-
-// a rectangle of rows and columns, both ends included; −1 counts from the end
-static const struct {
-    const char *name;
-    int row_from, row_to, column_from, column_to;
-} cloth_pins[] = {
-    {"top_left", 0, 0, 0, 0},         {"top_right", 0, 0, -1, -1},   {"bottom_left", -1, -1, 0, 0},
-    {"bottom_right", -1, -1, -1, -1}, {"top_edge", 0, 0, 0, -1},     {"bottom_edge", -1, -1, 0, -1},
-    {"left_edge", 0, -1, 0, 0},       {"right_edge", 0, -1, -1, -1},
-};
-
-static int from_end(int index, int count) {
-    return index < 0 ? count + index : index;
-}
-
-static void choose_rectangle(int *chosen, int *count, size_t pin, int rows, int columns) {
-    for (int row = from_end(cloth_pins[pin].row_from, rows); row <= from_end(cloth_pins[pin].row_to, rows); row++)
-        for (int column = from_end(cloth_pins[pin].column_from, columns);
-             column <= from_end(cloth_pins[pin].column_to, columns); column++)
-            chosen[(*count)++] = row * columns + column;
-}
-
-static ck_Status fail_pin(const ck_Model *model, const ck_Scene *scene, const char *pin, const char *path,
-                          ck_Error *error) {
-    const ck_SceneCloth *cloth = scene->file->cloth;
-    if (cloth)
-        return ck_scene_fail(scene, path, error,
-                             "pin %s is not on the cloth; give a corner (top_left …), an edge (top_edge …), row:column "
-                             "up to %u:%u, or a number up to %d",
-                             pin, cloth->rows - 1, cloth->columns - 1, model->particle_count - 1);
-    return ck_scene_fail(scene, path, error, "pin %s is not on the %s; give first, last, or a number up to %d", pin,
-                         scene->file->rope ? "rope" : "network", model->particle_count - 1);
-}
-
-ck_Status ck_model_resolve_pin(int *chosen, int *count, const ck_Model *model, const ck_Scene *scene, const char *pin,
-                               const char *path, ck_Error *error) {
-    const ck_SceneCloth *cloth = scene->file->cloth;
-    *count = 0;
-    if (cloth)
-        for (size_t i = 0; i < sizeof cloth_pins / sizeof *cloth_pins; i++)
-            if (!strcmp(pin, cloth_pins[i].name))
-                choose_rectangle(chosen, count, i, (int)cloth->rows, (int)cloth->columns);
-    if (!cloth && !strcmp(pin, "first")) chosen[(*count)++] = 0;
-    if (!cloth && !strcmp(pin, "last")) chosen[(*count)++] = model->particle_count - 1;
-
-    // row:column or a number, with nothing behind it
-    unsigned row, column;
-    int used = 0;
-    bool digits = pin[0] && strspn(pin, "0123456789:") == strlen(pin);
-    if (digits && cloth && sscanf(pin, "%9u:%9u%n", &row, &column, &used) == 2 && !pin[used] && row < cloth->rows &&
-        column < cloth->columns)
-        chosen[(*count)++] = (int)(row * cloth->columns + column);
-    if (digits && sscanf(pin, "%9u%n", &row, &used) == 1 && !pin[used] && row < (unsigned)model->particle_count)
-        chosen[(*count)++] = (int)row;
-    return *count ? CK_OK : fail_pin(model, scene, pin, path, error);
 }

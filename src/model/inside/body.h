@@ -9,11 +9,26 @@
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY.
 ck_Status ck_model_build_body(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 
+// The same of a mesh, from its file.
+ck_Status ck_model_build_mesh(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
+// Room for so many particles and springs. Errors: CK_BAD_INPUT where there are too many, CK_NO_MEMORY.
+ck_Status ck_body_allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
+                           ck_Error *error);
+
+// Adds a spring unless its stiffness is 0, which models none.
+void ck_body_add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, int b, double length,
+                        ck_SpringKind kind);
+
+// The size and spacing, m, of a body that is no grid: as given, or where 0 what its particles and springs are.
+void ck_body_set_lengths(ck_Model *model, double size, double spacing);
+
 // Moves the particles that are not pinned out of the body's plane as the scene asks. Rest lengths stay those of the
 // flat body.
 void ck_model_add_noise(ck_Model *model, const ck_Scene *scene);
 
-// The particles that a pin's name stands for: a corner, an edge, first, last, row:column or a number.
+// The particles that a pin's name stands for, each once: a corner, an edge, first, last, row:column, a number, a place
+// or a group.
 //   chosen  [particle_count] out;  count  out
 // Errors: CK_BAD_INPUT at path.
 ck_Status ck_model_resolve_pin(int *chosen, int *count, const ck_Model *model, const ck_Scene *scene, const char *pin,

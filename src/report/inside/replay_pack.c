@@ -16,7 +16,7 @@
 static float position_at(const ck_Replay *replay, size_t index) {
     float value;
     const char *positions = replay->bytes + replay->header_size + sizeof(float) * (size_t)replay->frame_count +
-                            ck_replay_spring_bytes(replay);
+                            ck_replay_body_bytes(replay);
     memcpy(&value, positions + sizeof value * index, sizeof value);
     return value;
 }
@@ -100,7 +100,7 @@ static char *pack_path(char *out, const uint32_t *codes, const uint32_t *first, 
 }
 
 ck_Status ck_replay_pack(char **packed, size_t *size, const ck_Replay *replay, ck_Error *error) {
-    size_t before = replay->header_size + sizeof(float) * (size_t)replay->frame_count + ck_replay_spring_bytes(replay);
+    size_t before = replay->header_size + sizeof(float) * (size_t)replay->frame_count + ck_replay_body_bytes(replay);
     size_t count = ck_replay_path_numbers(replay), width = 3 * (size_t)replay->particle_count;
     size_t paths = (size_t)replay->path_count;
     *size = before + paths * (1 + BOX_BYTES + CODE_BITS / 8 * count);

@@ -237,8 +237,9 @@ ck_Status ck_scene_check(const ck_Document *document, const cyaml_schema_value_t
     Check check = {.document = document, .yaml = (yaml_document_t *)&document->yaml, .error = error};
     yaml_node_t *root = yaml_document_get_root_node(check.yaml);
     ck_Status status = check_value(&check, root, schema, "");
-    static const char *const bodies[] = {"cloth", "rope", "network", NULL};
-    if (!status) status = check_one_of(&check, root, bodies, "the scene", "cloth, rope and network; it needs one body");
+    static const char *const bodies[] = {"cloth", "rope", "network", "mesh", NULL};
+    if (!status)
+        status = check_one_of(&check, root, bodies, "the scene", "cloth, rope, network and mesh; it needs one body");
 
     static const char *const clocks[] = {"step", "fps", NULL};
     if (!status)

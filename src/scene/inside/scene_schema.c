@@ -20,6 +20,10 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"network.springs[].rest", CK_RANGE_POSITIVE},
     {"network.size", CK_RANGE_POSITIVE},
     {"network.spacing", CK_RANGE_POSITIVE},
+    {"mesh.mass", CK_RANGE_POSITIVE},
+    {"mesh.density", CK_RANGE_POSITIVE},
+    {"mesh.weld", CK_RANGE_NOT_NEGATIVE},
+    {"mesh.scale", CK_RANGE_POSITIVE},
     {"springs.stiffness", CK_RANGE_NOT_NEGATIVE},
     {"springs.damping", CK_RANGE_NOT_NEGATIVE},
     {"springs.shear", CK_RANGE_NOT_NEGATIVE},
@@ -43,9 +47,11 @@ const ck_RangeRule ck_scene_ranges[] = {
 };
 
 static const cyaml_schema_value_t number = {CYAML_VALUE_FLOAT(CYAML_FLAG_DEFAULT, double)};
-static const cyaml_schema_value_t index_pair_entry = {CYAML_VALUE_UINT(CYAML_FLAG_DEFAULT, uint32_t)};
+static const cyaml_schema_value_t index_entry = {CYAML_VALUE_UINT(CYAML_FLAG_DEFAULT, uint32_t)};
 static const cyaml_schema_value_t index_pair = {
-    CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, uint32_t, &index_pair_entry, 2)};
+    CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, uint32_t, &index_entry, 2)};
+static const cyaml_schema_value_t index_triple = {
+    CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, uint32_t, &index_entry, 3)};
 static const cyaml_schema_value_t text = {CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 0, CYAML_UNLIMITED)};
 
 static const cyaml_schema_field_t cloth_fields[] = {
@@ -69,6 +75,17 @@ static const cyaml_schema_field_t rope_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t mesh_fields[] = {
+    CYAML_FIELD_STRING_PTR("file", REQUIRED | CYAML_FLAG_POINTER, ck_SceneMesh, file, 1, 1000),
+    CYAML_FIELD_FLOAT("mass", OPTIONAL, ck_SceneMesh, mass),
+    CYAML_FIELD_FLOAT("density", OPTIONAL, ck_SceneMesh, density),
+    CYAML_FIELD_FLOAT("weld", OPTIONAL, ck_SceneMesh, weld),
+    CYAML_FIELD_FLOAT("scale", OPTIONAL, ck_SceneMesh, scale),
+    CYAML_FIELD_STRING_PTR("up", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneMesh, up, 1, 20),
+    CYAML_FIELD_SEQUENCE_FIXED("origin", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneMesh, origin, &number, 3),
+    CYAML_FIELD_END,
+};
+
 static const cyaml_schema_field_t node_fields[] = {
     CYAML_FIELD_SEQUENCE_FIXED("at", REQUIRED, ck_SceneNode, at, &number, 3),
     CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneNode, mass),
@@ -78,7 +95,7 @@ static const cyaml_schema_field_t node_fields[] = {
 static const cyaml_schema_value_t node = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneNode, node_fields)};
 
 static const cyaml_schema_field_t network_spring_fields[] = {
-    CYAML_FIELD_SEQUENCE_FIXED("ends", REQUIRED, ck_SceneNetworkSpring, ends, &index_pair_entry, 2),
+    CYAML_FIELD_SEQUENCE_FIXED("ends", REQUIRED, ck_SceneNetworkSpring, ends, &index_entry, 2),
     CYAML_FIELD_FLOAT("stiffness", OPTIONAL, ck_SceneNetworkSpring, stiffness),
     CYAML_FIELD_FLOAT("damping", OPTIONAL, ck_SceneNetworkSpring, damping),
     CYAML_FIELD_FLOAT("rest", OPTIONAL, ck_SceneNetworkSpring, rest),
@@ -95,6 +112,8 @@ static const cyaml_schema_field_t network_fields[] = {
     CYAML_FIELD_SEQUENCE("bars", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, bars, &index_pair, 0,
                          CK_SCENE_MAX_PARTICLES),
     CYAML_FIELD_SEQUENCE("springs", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, springs, &network_spring, 0,
+                         CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_SEQUENCE("triangles", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, triangles, &index_triple, 0,
                          CK_SCENE_MAX_PARTICLES),
     CYAML_FIELD_FLOAT("size", OPTIONAL, ck_SceneNetwork, size),
     CYAML_FIELD_FLOAT("spacing", OPTIONAL, ck_SceneNetwork, spacing),
@@ -174,6 +193,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING_PTR("cloth", OPTIONAL, ck_SceneFile, cloth, cloth_fields),
     CYAML_FIELD_MAPPING_PTR("rope", OPTIONAL, ck_SceneFile, rope, rope_fields),
     CYAML_FIELD_MAPPING_PTR("network", OPTIONAL, ck_SceneFile, network, network_fields),
+    CYAML_FIELD_MAPPING_PTR("mesh", OPTIONAL, ck_SceneFile, mesh, mesh_fields),
     CYAML_FIELD_MAPPING_PTR("springs", OPTIONAL, ck_SceneFile, springs, springs_fields),
     CYAML_FIELD_SEQUENCE("pins", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, pins, &text, 0, CYAML_UNLIMITED),
     CYAML_FIELD_MAPPING_PTR("noise", OPTIONAL, ck_SceneFile, noise, noise_fields),
