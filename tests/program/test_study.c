@@ -1,4 +1,5 @@
 // Studies through the program: killed and resumed, in parts and merged; and what they find where it is known.
+#include "csv_reader.h"
 #include "fixture.h"
 #include "fixture_program.h"
 
@@ -175,6 +176,7 @@ static void test_critical(void **state) {
         0);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         find_row(row, sizeof row, "critical/stability.csv", rows[i].start);
+        *strrchr(row, ',') = 0; // rounding_step_s, behind the ratio
         assert_near(row, atof(strrchr(row, ',') + 1), 1, rows[i].tolerance);
     }
 }
@@ -186,9 +188,19 @@ static void test_precision(void **state) {
     finish("precision oscillator --engine native-verlet --repeats 0 --out %s/precision", 0);
     find_row(row, sizeof row, "precision/precision_summary.csv", "oscillator,native-verlet,order");
     assert_near(row, field_of(row, 4), 2, 0.2);
-    char *text = read_text("precision/precision.csv");
-    assert_non_null(strstr(text, ",1\n"));
-    free(text);
+    ck_CsvTable table;
+    ck_Error error = {0};
+    char directory[200];
+    int on_front = 0;
+    snprintf(directory, sizeof directory, "%s/precision", fixture_directory);
+    if (ck_csv_table_read(&table, directory, &ck_layouts[CK_PRECISION], &error)) fail_msg("%s", error.message);
+    for (int i = 0; i < table.row_count; i++) {
+        on_front += ck_csv_number_of(&table, i, "on_front") == 1;
+        // of doubles about a metre: 2.2e-16 m against g*dt^2, which this scene has none of
+        assert_true(isnan(ck_csv_number_of(&table, i, "rounding")));
+    }
+    assert_in_range(on_front, 2, table.row_count);
+    ck_csv_table_free(&table);
 }
 
 // A drag that does nothing is not needed, and it alone.
