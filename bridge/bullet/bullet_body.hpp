@@ -5,6 +5,7 @@
 #include "bullet_guard.hpp"
 #include "bullet_loops.h"
 #include "engine.h"
+#include "hinges.h"
 #include "scaled_model.h"
 
 #include <BulletSoftBody/btSoftBody.h>
@@ -61,6 +62,47 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
 
 // Positions and velocities of all nodes. position: which of a node's, m_x or m_q.
 ck_BulletNodes ck_bullet_nodes(const ck_BulletBody &body, btVector3 btSoftBody::Node::*position);
+
+// Forces of hinges at the nodes' positions, [nodes], in units of the model. position: which of a node's, m_x or m_q.
+class ck_BulletBending {
+  public:
+    explicit ck_BulletBending(const ck_BulletBody &owner);
+    bool is_there() const {
+        return body.model->hinge_count > 0;
+    }
+    // Takes the positions, and what each hinge pulls with.
+    void update(btVector3 btSoftBody::Node::*position);
+    // Adds scale times the force on each node to add(node, force).
+    template <class Add> void add_forces(Add add) const {
+        for (size_t i = 0; i < body.particle_of_node.size(); i++) {
+            const double *f = &force[3 * static_cast<size_t>(body.particle_of_node[i])];
+            add(static_cast<int>(i),
+                btVector3(static_cast<btScalar>(f[0]), static_cast<btScalar>(f[1]), static_cast<btScalar>(f[2])));
+        }
+    }
+    // Adds scale times the change of force by a move of nodes, −Σ pull·w·wᵀ·move; a pull that pushes is left out, so
+    // that the system stays definite.
+    template <class Moves, class Result> void multiply(double scale, const Moves &moves, Result &result) const {
+        for (int i = 0; i < body.model->hinge_count; i++) {
+            const ck_Hinge &hinge = body.model->hinges[i];
+            btVector3 sum(0, 0, 0);
+            for (int k = 0; k < 4; k++)
+                if (hinge.particles[k] >= 0)
+                    sum += static_cast<btScalar>(hinge.weights[k]) * moves[node(hinge.particles[k])];
+            for (int k = 0; k < 4; k++)
+                if (hinge.particles[k] >= 0)
+                    result[node(hinge.particles[k])] -=
+                        static_cast<btScalar>(scale * hinge.weights[k] * pull[static_cast<size_t>(i)]) * sum;
+        }
+    }
+
+  private:
+    int node(int particle) const {
+        return body.node_of_particle[static_cast<size_t>(particle)];
+    }
+    const ck_BulletBody &body;
+    std::vector<double> at, force, pull;
+};
 
 // Position and velocity in the scene's particle order and units: [3*n] m, [3*n] m/s. length: of a unit, m.
 void ck_bullet_body_read(const ck_BulletBody &body, double length, double *position, double *velocity);

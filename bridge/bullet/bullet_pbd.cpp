@@ -67,8 +67,9 @@ struct Classic {
     std::unique_ptr<Surroundings> around;
     ck_BulletBody body;
     const ck_BulletLoops *loops = ck_bullet_loops();
-    bool corrects;                          // to Hooke's law: springs, whose share is not the user's own
-    uint32_t substep;                       // since the start
+    bool corrects;    // to Hooke's law: springs, whose share is not the user's own
+    uint32_t substep; // since the start
+    std::unique_ptr<ck_BulletBending> bending;
     uint32_t apart;                         // substeps from one damping force to the next
     std::vector<btScalar> of_one, least;    // of each link of the table: (w_a + w_b)/κ, and κ
     std::vector<int> slot;                  // where its m_c0 is, in numbers from the first link's
@@ -134,6 +135,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     limit = std::fmin(limit, 0.5 / ck_stability_damping_rate(model));
     limit = std::fmin(limit, ck_stability_drag_time(model, 0.02));
     if (model->collider_count) limit = std::fmin(limit, 1.0 / 240);
+    limit = std::fmin(limit, ck_stability_bending_time(model));
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     double dt = model->step / used->substeps;
     ck_bullet_ledger(
@@ -151,6 +153,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
                                    : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke",
                                CK_APPROXIMATE});
     }
+    ck_ledger_add_bending(ledger, model, "Node::m_f", "each hinge's force before each step: explicit", CK_APPROXIMATE);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger,
                       {"spring damping", model->springs[0].damping, "N*s/m", "Node::m_f", model->springs[0].damping,
@@ -264,6 +267,7 @@ std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
     state->info.m_gravity = btVector3(model->gravity[0], model->gravity[1], model->gravity[2]);
     state->info.m_sparsesdf.Initialize();
     ck_bullet_body_build(state->body, model, used.substeps, ck_settings_own(&used, OWN_REORDERED, 0) > 0, &state->info);
+    state->bending = std::make_unique<ck_BulletBending>(state->body);
     btSoftBody &soft = *state->body.soft;
     soft.m_cfg.piterations = static_cast<int>(used.iterations);
     soft.m_cfg.kDF = 1;
@@ -313,6 +317,10 @@ void prepare_links(Classic &state) {
 void step_once(Classic &state) {
     btSoftBody &soft = *state.body.soft;
     prepare_links(state);
+    if (state.bending && state.bending->is_there()) {
+        state.bending->update(&btSoftBody::Node::m_x);
+        state.bending->add_forces([&](int node, const btVector3 &force) { soft.addForce(force, node); });
+    }
     if (state.body.model->terms & CK_TERM_FORCE)
         for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force, node);
     if (state.around) {
@@ -435,7 +443,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .version = ck_bullet_version,
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
+             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,

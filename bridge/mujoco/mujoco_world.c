@@ -1,5 +1,6 @@
 // MuJoCo: a particle is a body with three slide joints, a spring a spatial tendon, a pin a site of the world.
 #include "engine.h"
+#include "hinges.h"
 #include "mujoco_xml.h"
 #include "scaled_model.h"
 #include "time_scale.h"
@@ -27,7 +28,8 @@ typedef struct MujocoWorld {
     ck_Settings used;
     mjModel *model;
     mjData *data;
-    int *body; // [particle_count] of each particle; 0, the world, where it is pinned
+    int *body;       // [particle_count] of each particle; 0, the world, where it is pinned
+    double *bending; // [3][3*particle_count] places, speeds and forces of hinges; NULL without
 } MujocoWorld;
 
 static const char *version(void) {
@@ -62,6 +64,7 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     if (frequency > 0) limit = fmin(limit, 1 / frequency);
     limit = fmin(limit, 1 / ck_stability_damping_rate(model));
     limit = fmin(limit, ck_stability_drag_time(model, 0.1));
+    limit = fmin(limit, ck_stability_bending_time(model));
     if (model->collider_count) limit = fmin(limit, 1.0 / 1000);
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].restitution > 0) limit = fmin(limit, model->step / (4 * CK_MUJOCO_BOUNCE_STEPS));
@@ -93,6 +96,8 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     if (model->terms & CK_TERM_DRAG)
         ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "joint/damping", model->drag,
                                              "drag*m of each slide joint", CK_EXACT});
+    ck_ledger_add_bending(ledger, model, "xfrc_applied", "each hinge's force before each step: explicit",
+                          CK_APPROXIMATE);
     ck_ledger_add_colliders(
         ledger, model,
         (ck_LedgerRow){"restitution", 0, "1", "solref", 0,
@@ -113,6 +118,7 @@ static void destroy(void *state) {
     unload(world);
     ck_scaled_model_free(&world->scaled);
     free(world->body);
+    free(world->bending);
     free(world);
 }
 
@@ -175,8 +181,9 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     if (!world) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     world->used = *used;
     world->body = calloc((size_t)model->particle_count, sizeof *world->body);
+    if (model->hinge_count) world->bending = calloc(9 * (size_t)model->particle_count, sizeof(double));
     status = ck_scaled_model_create(&world->scaled, model);
-    if (status || !world->body)
+    if (status || !world->body || !world->bending != !model->hinge_count)
         status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     else
         status = load(world, error);
@@ -193,17 +200,6 @@ static bool has_left(const mjData *data) {
            data->warning[mjWARN_BADQACC].number;
 }
 
-static ck_StepResult step(void *state) {
-    MujocoWorld *world = state;
-    if (!world->data) return CK_STEP_NO_MEMORY;
-    for (uint32_t i = 0; i < world->used.substeps; i++) {
-        mj_step(world->model, world->data);
-        // it would begin anew from the start, and say nothing
-        if (has_left(world->data)) return CK_STEP_DIVERGED;
-    }
-    return CK_STEP_OK;
-}
-
 static void read_units(const MujocoWorld *world, double *position, double *velocity, double unit) {
     const ck_Model *model = &world->scaled.model;
     for (int i = 0; i < 3 * model->particle_count; i++) {
@@ -211,6 +207,30 @@ static void read_units(const MujocoWorld *world, double *position, double *veloc
         position[i] = unit * (model->position[i] + (body ? world->data->qpos[joint] : 0));
         velocity[i] = body ? unit * world->data->qvel[joint] : 0;
     }
+}
+
+// Sets each body's force to the scene's and its hinges'.
+static void bend(MujocoWorld *world) {
+    const ck_Model *model = &world->scaled.model;
+    const size_t count = 3 * (size_t)model->particle_count;
+    double *position = world->bending, *force = position + 2 * count;
+    read_units(world, position, position + count, 1);
+    for (size_t i = 0; i < count; i++) force[i] = model->force[i % 3];
+    ck_hinges_add_force(model, position, force);
+    for (size_t i = 0; i < count; i++)
+        if (world->body[i / 3]) world->data->xfrc_applied[6 * (size_t)world->body[i / 3] + i % 3] = force[i];
+}
+
+static ck_StepResult step(void *state) {
+    MujocoWorld *world = state;
+    if (!world->data) return CK_STEP_NO_MEMORY;
+    for (uint32_t i = 0; i < world->used.substeps; i++) {
+        if (world->bending) bend(world);
+        mj_step(world->model, world->data);
+        // it would begin anew from the start, and say nothing
+        if (has_left(world->data)) return CK_STEP_DIVERGED;
+    }
+    return CK_STEP_OK;
 }
 
 static void read_state(const void *state, double *position, double *velocity) {
@@ -276,7 +296,7 @@ const ck_Engine ck_mujoco = {
     .version = version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING,
     .settings = settings,
     .order = 1,
     .create = create,

@@ -1,5 +1,6 @@
 // ODE: particles are bodies, springs are double ball joints whose softness (ERP, CFM) is the spring's k and c.
 #include "engine.h"
+#include "hinges.h"
 #include "ode_contact.h"
 #include "scaled_model.h"
 #include "shape.h"
@@ -21,6 +22,7 @@ typedef struct OdeWorld {
     dWorldID world;
     dJointGroupID joints;
     dBodyID *bodies; // [particle_count]
+    double *bending; // [2][3*particle_count] places and forces of hinges; NULL without
     ck_OdeContacts *contacts;
     double dt; // s, one substep
     uint32_t substeps;
@@ -113,6 +115,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
         fmin(fmin(model->collider_count ? 1.0 / 240 : 1.0 / 120, across), ck_stability_drag_time(model, 0.1));
     double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
     if (quick && rate > 0) limit = fmin(limit, sqrt((model->collider_count ? 4 : 10) / rate));
+    limit = fmin(limit, ck_stability_bending_time(model));
     *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
     ck_settings_take_own(used, wanted);
     if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
@@ -136,6 +139,8 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                              "h*drag, threshold 0: first order", CK_APPROXIMATE});
     // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
     translate_springs(model, h, used, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
+    ck_ledger_add_bending(ledger, model, "dBodyAddForce", "each hinge's force before each step: explicit",
+                          CK_APPROXIMATE);
     translate_contact(model, ledger);
 }
 
@@ -147,6 +152,7 @@ static void destroy(void *state) {
     if (ode->world) dWorldDestroy(ode->world);
     if (--world_count == 0) dCloseODE();
     free(ode->bodies);
+    free(ode->bending);
     free(ode);
 }
 
@@ -202,7 +208,8 @@ static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *u
     const ck_Model *model = ode->model = &ode->scaled.model;
     if (world_count++ == 0) dInitODE2(0);
     ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
-    if (ode->bodies && !scaled) ode->world = dWorldCreate();
+    if (model->hinge_count) ode->bending = calloc(6 * (size_t)model->particle_count, sizeof(double));
+    if (ode->bodies && !scaled && !ode->bending == !model->hinge_count) ode->world = dWorldCreate();
     if (ode->world) ode->joints = dJointGroupCreate(0);
     ck_Status status = ode->joints ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
@@ -252,6 +259,17 @@ static bool is_safe(const OdeWorld *ode) {
     return true;
 }
 
+static void bend(OdeWorld *ode) {
+    const size_t count = 3 * (size_t)ode->model->particle_count;
+    double *position = ode->bending, *force = position + count;
+    for (size_t i = 0; i < count; i++) position[i] = dBodyGetPosition(ode->bodies[i / 3])[i % 3];
+    memset(force, 0, count * sizeof *force);
+    ck_hinges_add_force(ode->model, position, force);
+    for (size_t i = 0; i < count; i += 3)
+        if (!dBodyIsKinematic(ode->bodies[i / 3]))
+            dBodyAddForce(ode->bodies[i / 3], force[i], force[i + 1], force[i + 2]);
+}
+
 static ck_StepResult step(void *state) {
     OdeWorld *ode = state;
     const double *force = ode->model->force;
@@ -260,6 +278,7 @@ static ck_StepResult step(void *state) {
         if (!is_safe(ode)) return CK_STEP_DIVERGED;
         for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
             if (!dBodyIsKinematic(ode->bodies[j])) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
+        if (ode->bending) bend(ode);
         if (ode->contacts) ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies);
         // QuickStep shuffles its rows from a seed that is global to the process
         dRandSetSeed(1);
@@ -316,7 +335,7 @@ static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const c
 
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
-     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
+     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING)
 
 static const ck_Setting quick_settings[] = {
     {.name = "substeps",

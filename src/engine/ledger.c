@@ -1,5 +1,7 @@
 #include "ledger.h"
 
+#include "hinges.h"
+
 #include "model.h"
 
 #include <stddef.h>
@@ -49,4 +51,11 @@ void ck_ledger_add_masses(ck_Ledger *ledger, const ck_Model *model, ck_LedgerRow
         mass.native_value = takes_inverse ? 1 / model->mass[i] : model->mass[i];
         ck_ledger_add(ledger, mass);
     }
+}
+
+void ck_ledger_add_bending(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula,
+                           ck_Match match) {
+    if (model->hinge_count)
+        ck_ledger_add(ledger, (ck_LedgerRow){"bending stiffness", model->bending, ck_hinges_unit(model), parameter,
+                                             model->hinges[0].stiffness, formula, match});
 }

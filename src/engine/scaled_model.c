@@ -23,6 +23,10 @@ static void scale_lengths(ck_Model *model, double unit) {
     divide(&model->size, 1, unit);
     divide(&model->spacing, 1, unit);
     for (int i = 0; i < model->spring_count; i++) divide(&model->springs[i].rest, 1, unit);
+    for (int i = 0; i < model->hinge_count; i++) {
+        divide(model->hinges[i].weights, 4, 1 / unit);
+        divide(&model->hinges[i].stiffness, 1, unit * unit);
+    }
     for (int i = 0; i < model->collider_count; i++) {
         divide(model->colliders[i].point, 3, unit);
         divide(&model->colliders[i].radius, 1, unit);
@@ -36,6 +40,7 @@ static void scale_masses(ck_Model *model, double unit) {
         divide(&model->springs[i].stiffness, 1, unit);
         divide(&model->springs[i].damping, 1, unit);
     }
+    for (int i = 0; i < model->hinge_count; i++) divide(&model->hinges[i].stiffness, 1, unit);
 }
 
 // The power of two at or below a number.
@@ -62,8 +67,10 @@ ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) 
     own->mass = copy_of(model->mass, particles, sizeof(double));
     own->pinned = copy_of(model->pinned, particles, sizeof(bool));
     own->springs = copy_of(model->springs, (size_t)model->spring_count, sizeof(ck_Spring));
+    own->hinges = copy_of(model->hinges, (size_t)model->hinge_count, sizeof(ck_Hinge));
     own->colliders = copy_of(model->colliders, (size_t)model->collider_count, sizeof(ck_Collider));
-    if (!own->position || !own->velocity || !own->mass || !own->pinned || !own->springs || !own->colliders) {
+    if (!own->position || !own->velocity || !own->mass || !own->pinned || !own->springs || !own->hinges ||
+        !own->colliders) {
         ck_scaled_model_free(scaled);
         return CK_NO_MEMORY;
     }
@@ -88,6 +95,7 @@ void ck_scaled_model_free(ck_ScaledModel *scaled) {
     free(scaled->model.mass);
     free(scaled->model.pinned);
     free(scaled->model.springs);
+    free(scaled->model.hinges);
     free(scaled->model.colliders);
     *scaled = (ck_ScaledModel){0};
 }

@@ -53,6 +53,21 @@ static json_t *triangle_of(const int *corners) {
     return json_pack("[i, i, i]", corners[0], corners[1], corners[2]);
 }
 
+static json_t *hinge_of(const ck_Hinge *hinge) {
+    json_t *nodes = json_array(), *weights = json_array();
+    bool is_whole = nodes && weights;
+    for (int i = 0; i < 4 && is_whole; i++)
+        if (hinge->particles[i] >= 0)
+            is_whole = !json_array_append_new(nodes, json_integer(hinge->particles[i])) &&
+                       !json_array_append_new(weights, json_real(hinge->weights[i]));
+    if (is_whole)
+        return json_pack("{s:o, s:o, s:f, s:f}", "nodes", nodes, "weights", weights, "stiffness", hinge->stiffness,
+                         "rest", hinge->rest);
+    json_decref(nodes);
+    json_decref(weights);
+    return NULL;
+}
+
 static json_t *collider_of(const ck_Collider *collider) {
     if (collider->shape == CK_SPHERE)
         return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(collider->point), "radius",
@@ -69,6 +84,8 @@ static void put_network(Writer *writer, const ck_Model *model) {
     for (int i = 0; i < model->spring_count; i++) put(writer, i ? ",\n  " : "\n  ", spring_of(&model->springs[i]), "");
     for (int i = 0; i < model->triangle_count; i++)
         put(writer, i ? ",\n  " : "],\n \"triangles\": [\n  ", triangle_of(model->triangles[i]), "");
+    for (int i = 0; i < model->hinge_count; i++)
+        put(writer, i ? ",\n  " : "],\n \"hinges\": [\n  ", hinge_of(&model->hinges[i]), "");
     fprintf(writer->out, "]}");
 }
 
@@ -173,6 +190,15 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
         const ck_Spring *spring = &model->springs[i];
         fprintf(out, "%d %d %.17g %.17g %.17g %s\n", spring->a, spring->b, spring->rest, spring->stiffness,
                 spring->damping, ck_export_kinds[spring->kind]);
+    }
+    // only who said that it models bending is told of it
+    if (model->hinge_count) fprintf(out, "hinges %d\n", model->hinge_count);
+    for (int i = 0; i < model->hinge_count; i++) {
+        const ck_Hinge *hinge = &model->hinges[i];
+        const double numbers[] = {hinge->weights[0], hinge->weights[1], hinge->weights[2],
+                                  hinge->weights[3], hinge->stiffness,  hinge->rest};
+        fprintf(out, "%d %d %d %d", hinge->particles[0], hinge->particles[1], hinge->particles[2], hinge->particles[3]);
+        line(out, "", numbers, 6);
     }
     fprintf(out, "colliders %d\n", model->collider_count);
     for (int i = 0; i < model->collider_count; i++) {

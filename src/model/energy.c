@@ -1,3 +1,4 @@
+#include "hinges.h"
 #include "springs.h"
 
 #include "vector.h"
@@ -7,7 +8,7 @@
 ck_Energy ck_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
     const double *position = ck_trajectory_position(trajectory, frame),
                  *velocity = ck_trajectory_velocity(trajectory, frame);
-    ck_Energy energy = {.elastic = ck_springs_energy(model, position)};
+    ck_Energy energy = {.elastic = ck_springs_energy(model, position) + ck_hinges_energy(model, position)};
     for (int i = 0; i < model->particle_count; i++) {
         double field[3];
         // a pin neither moves nor falls, until it is let go

@@ -11,11 +11,12 @@
 #include <string.h>
 
 const char *const ck_term_names[CK_TERM_COUNT] = {
-    "springs", "rigid bars",     "spring damping", "gravity", "force",
-    "drag",    "start velocity", "plane",          "sphere",  "release",
+    "springs",        "rigid bars", "spring damping", "gravity", "force",   "drag",
+    "start velocity", "plane",      "sphere",         "release", "bending",
 };
 
-const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness", "bend stiffness"};
+const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness",
+                                                         "second-neighbour stiffness"};
 
 static ck_Status copy_text(char **out, const char *text) {
     *out = text ? strdup(text) : NULL;
@@ -242,6 +243,7 @@ static unsigned terms_in_use(const ck_Model *model) {
     for (int i = 0; i < model->collider_count; i++)
         terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
     if (model->release_count) terms |= CK_TERM_RELEASE;
+    if (model->hinge_count) terms |= CK_TERM_BENDING;
     return terms;
 }
 
@@ -252,6 +254,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (!status) status = set_time(model, scene, error);
     if (!status) status = ck_model_build_body(model, scene, error);
     if (!status) status = check_springs(model, scene, error);
+    if (!status) status = ck_model_build_hinges(model, scene, error);
     if (!status) status = set_pins(model, scene, error);
     if (!status) status = set_releases(model, scene, error);
     if (!status) status = set_colliders(model, scene, error);
@@ -275,6 +278,7 @@ void ck_model_free(ck_Model *model) {
         free(model->groups[i].particles);
     }
     free(model->groups);
+    free(model->hinges);
     free(model->triangles);
     free(model->releases);
     free(model->measure);

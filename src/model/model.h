@@ -24,8 +24,9 @@ typedef enum ck_Term {
     CK_TERM_VELOCITY = 1 << 6, // at the start
     CK_TERM_PLANE = 1 << 7,
     CK_TERM_SPHERE = 1 << 8,
-    CK_TERM_RELEASE = 1 << 9, // pins let go while it runs
-    CK_TERM_COUNT = 10,
+    CK_TERM_RELEASE = 1 << 9,  // pins let go while it runs
+    CK_TERM_BENDING = 1 << 10, // hinges
+    CK_TERM_COUNT = 11,
 } ck_Term;
 
 // The name of the term in bit order, as a scene's author knows it.
@@ -41,6 +42,14 @@ typedef struct ck_Spring {
     double damping;   // N·s/m along the spring
     ck_SpringKind kind;
 } ck_Spring;
+
+// What resists being bent: see hinges.h.
+typedef struct ck_Hinge {
+    int particles[4];  // −1: none
+    double weights[4]; // 1/m, of a vector as long as 2·sin(angle/2)
+    double stiffness;  // N·m
+    double rest;       // rad
+} ck_Hinge;
 
 typedef enum ck_ColliderShape { CK_PLANE, CK_SPHERE } ck_ColliderShape;
 
@@ -80,6 +89,9 @@ typedef struct ck_Model {
     int pin_count;
     ck_Spring *springs;
     int spring_count;
+    ck_Hinge *hinges;
+    int hinge_count;
+    double bending;      // N·m of a sheet, N·m² of a rope, as the scene gives it; 0: none, or hinges of their own
     int (*triangles)[3]; // [triangle_count] particles of a mesh's faces, else none
     int triangle_count;
     ck_Group *groups; // of a mesh

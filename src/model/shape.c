@@ -1,10 +1,13 @@
 #include "shape.h"
 
+#include "hinges.h"
 #include "springs.h"
 #include "vector.h"
 
+#include <math.h>
+
 bool ck_shape_is_chain(const ck_Model *model) {
-    if (model->spring_count != model->particle_count - 1 || !model->spring_count) return false;
+    if (model->spring_count != model->particle_count - 1 || !model->spring_count || model->hinge_count) return false;
     for (int i = 0; i < model->spring_count; i++)
         if (model->springs[i].a != i || model->springs[i].b != i + 1) return false;
     return true;
@@ -26,6 +29,8 @@ bool ck_shape_is_even_chain(const ck_Model *model) {
 bool ck_shape_is_falling(const ck_Model *model) {
     bool falling =
         !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE)) && ck_springs_start_at_rest(model);
+    for (int i = 0; i < model->hinge_count; i++)
+        falling &= fabs(ck_hinge_angle(&model->hinges[i], model->position) - model->hinges[i].rest) <= 1e-9;
     // springs have nothing to do only where all particles are pushed alike
     double first[3], field[3];
     ck_model_field(model, 0, first);

@@ -8,7 +8,8 @@
 extern "C" {
 #endif
 
-// True for particles joined one after the other by one spring each, and no others: a rope, or a network of such bars.
+// True for particles joined one after the other by one spring each, no others, and no hinges: a rope, or a
+// network of such bars.
 bool ck_shape_is_chain(const ck_Model *model);
 
 // True for a chain whose springs are alike and start in one straight line.

@@ -1,5 +1,6 @@
 #include "springs.h"
 
+#include "hinges.h"
 #include "vector.h"
 
 #include <string.h>
@@ -67,6 +68,7 @@ void ck_springs_accelerate(const ck_Model *model, const double *position, const 
         ck_add_scaled(acceleration + 3 * spring->a, pull, d);
         ck_add_scaled(acceleration + 3 * spring->b, -pull, d);
     }
+    if (model->hinge_count) ck_hinges_add_force(model, position, acceleration);
     for (int i = 0; i < model->particle_count; i++) {
         double field[3], inverse = 1 / model->mass[i];
         ck_model_field(model, i, field);

@@ -1,5 +1,6 @@
 #include "time_scale.h"
 
+#include "hinges.h"
 #include "shape.h"
 #include "vector.h"
 
@@ -64,8 +65,10 @@ static double damping_of(const ck_Spring *spring) {
 }
 
 ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
+    double bending = 0;
     ck_Status status = largest_rate(model, stiffness_of, frequency);
-    *frequency = sqrt(*frequency);
+    if (!status && model->hinge_count) status = ck_hinges_rate(model, &bending);
+    *frequency = sqrt(*frequency + bending);
     return status;
 }
 
@@ -144,6 +147,12 @@ double ck_stability_bar_time(const ck_Model *model, uint32_t iterations) {
     if (load > 0)
         limit = fmin(limit, sqrt(1e-3 * iterations * model->spacing / (ck_stability_lightness(model) * load)));
     return limit;
+}
+
+double ck_stability_bending_time(const ck_Model *model) {
+    double rate;
+    if (!model->hinge_count) return INFINITY;
+    return ck_hinges_rate(model, &rate) ? 0 : 1 / sqrt(rate);
 }
 
 double ck_stability_drag_time(const ck_Model *model, double share) {

@@ -54,6 +54,10 @@ double ck_stability_bar_time(const ck_Model *model, uint32_t iterations);
 // from 1.4 to 0.005 g.
 uint32_t ck_stability_sweeps(const ck_Model *model);
 
+// The time in which the fastest bending turns by a radian, s: half of what an explicit step may take. INFINITY without
+// hinges; 0 without memory.
+double ck_stability_bending_time(const ck_Model *model);
+
 // The longest step, in s, in which drag takes no more than share of a speed; INFINITY without drag.
 double ck_stability_drag_time(const ck_Model *model, double share);
 

@@ -55,6 +55,7 @@ void ck_native_destroy(void *state) {
     ck_projection_destroy(native->cloth);
     free(native->compliance);
     free(native->gamma);
+    free(native->bending);
     free(native->position);
     free(native->velocity);
     free(native->start);

@@ -22,6 +22,7 @@ typedef struct ck_Native {
     double *inverse_mass;            // [n]
     double *multiplier;              // [springs] of the constraints, kg·m (force·dt²)
     double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
+    double *bending;                 // [3*hinges] XPBD's multipliers of hinges, N·s²; NULL without
     ck_Contact *contact;             // NULL without colliders
     struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs

@@ -1,5 +1,6 @@
 // Damped springs stepped by velocity Verlet with predicted velocity: the accuracy workhorse.
 #include "engine.h"
+#include "hinges.h"
 #include "native.h"
 #include "spring_kernel.h"
 #include "time_scale.h"
@@ -8,7 +9,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Acceleration of all particles from springs, field and drag.
+// Adds the acceleration by hinges. Cost: one pass over them.
+static void bend(const ck_Native *native, double *acceleration) {
+    for (int i = 0; i < native->model->hinge_count; i++) {
+        const ck_Hinge *hinge = &native->model->hinges[i];
+        const ck_HingeState state = ck_hinge_state(hinge, native->position);
+        for (int k = 0; k < 4; k++) {
+            const int particle = hinge->particles[k];
+            if (particle >= 0)
+                ck_add_scaled(acceleration + 3 * particle,
+                              -hinge->weights[k] * state.pull * native->inverse_mass[particle], state.vector);
+        }
+    }
+}
+
+// Acceleration of all particles from springs, hinges, field and drag.
 //   position, velocity  [3*n] in, m and m/s
 //   acceleration        [3*n] out, m/s²
 // Cost: one pass over springs, one over particles. Cannot fail.
@@ -27,6 +42,7 @@ static void accelerate(const ck_Native *native, double *acceleration) {
         ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
         ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
     }
+    if (model->hinge_count) bend(native, acceleration);
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
@@ -91,6 +107,7 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     ck_settings_take_own(used, wanted);
     ck_own_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);
     ck_own_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
+    ck_ledger_add_bending(ledger, model, "stiffness", "s at rows and edges, 2*s at twisted squares", CK_EXACT);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "damping",
                                              model->springs[0].damping, "c along the spring", CK_EXACT});
@@ -201,7 +218,7 @@ const ck_Engine ck_native_verlet = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_VELOCITY_VERLET,
-    .terms = CK_NATIVE_TERMS,
+    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING,
     .settings = settings,
     .order = 2,
     .create = create,

@@ -1,5 +1,6 @@
 // Extended position-based dynamics: compliant constraints, one iteration per small substep.
 #include "engine.h"
+#include "hinges.h"
 #include "projection.h"
 #include "time_scale.h"
 #include "vector.h"
@@ -33,6 +34,35 @@ static void sweep(ck_Native *native) {
     }
 }
 
+// The same over hinges: of a flat one the whole vector is the constraint, softened by the pull that it has; else its
+// angle is. Cost: one pass over hinges.
+static void sweep_hinges(ck_Native *native) {
+    const ck_Model *model = native->model;
+    const double squared = native->dt * native->dt;
+    for (int i = 0; i < model->hinge_count; i++) {
+        const ck_Hinge *hinge = &model->hinges[i];
+        const ck_HingeState state = ck_hinge_state(hinge, native->position);
+        double weight = 0, *multiplier = native->bending + 3 * i, residual[3];
+        for (int k = 0; k < 4; k++)
+            if (hinge->particles[k] >= 0)
+                weight += hinge->weights[k] * hinge->weights[k] * native->inverse_mass[hinge->particles[k]];
+        if (!(weight > 0)) continue;
+        // one sweep goes the implicit step's share of the way to where the hinge pulls
+        const double stiffness = fmax(hinge->stiffness, fabs(state.pull)), compliance = 1 / (stiffness * squared);
+        for (int axis = 0; axis < 3; axis++) {
+            residual[axis] = state.pull / stiffness * state.vector[axis] + compliance * multiplier[axis];
+            const double change = -native->used.relaxation * residual[axis] / (weight + compliance);
+            multiplier[axis] += change;
+            for (int k = 0; k < 4; k++) {
+                const int particle = hinge->particles[k];
+                if (particle >= 0)
+                    native->position[3 * particle + axis] +=
+                        native->inverse_mass[particle] * hinge->weights[k] * change;
+            }
+        }
+    }
+}
+
 // x ← x + v·dt + a·dt²;  sweeps;  v ← (x − x_start)/dt/(1 + γ·dt)
 // Drag comes last: before the sweeps it would also ease gravity's push, and a body at rest would hang too high.
 static void substep(ck_Native *native) {
@@ -40,6 +70,7 @@ static void substep(ck_Native *native) {
     const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
     ck_native_start_substep(native);
     memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
+    if (native->bending) memset(native->bending, 0, 3 * sizeof(double) * (size_t)model->hinge_count);
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
@@ -56,18 +87,33 @@ static void substep(ck_Native *native) {
     }
     for (uint32_t i = 0; i < native->iterations; i++) {
         sweep(native);
+        if (native->bending) sweep_hinges(native);
         ck_native_project(native);
     }
     for (int i = 0; i < 3 * model->particle_count; i++)
         native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
 }
 
+// Σ w²/m of a hinge, 1/(kg·m²).
+static double hinge_weight(const ck_Model *model, int index) {
+    const ck_Hinge *hinge = &model->hinges[index];
+    double sum = 0;
+    for (int k = 0; k < 4; k++)
+        if (hinge->particles[k] >= 0)
+            sum += hinge->weights[k] * hinge->weights[k] * ck_model_inverse_mass(model, hinge->particles[k]);
+    return sum;
+}
+
 // Time step: with 1/k_eff = 1/k + w·(dt² + c·dt/k)/iterations, where damping softens too, a spring is at most 0.5 % too
 // soft: k·dt² + c·dt ≤ 0.005·iterations/w. Drag is first order: at most 2 % of a speed a substep.
 static double time_step_limit(const ck_Model *model, uint32_t iterations) {
+    double bending = INFINITY;
+    for (int i = 0; i < model->hinge_count; i++)
+        bending = fmin(bending, sqrt(0.005 * iterations / (model->hinges[i].stiffness * hinge_weight(model, i))));
     if (model->terms & CK_TERM_RIGID)
-        return fmin(ck_stability_drag_time(model, 0.02), ck_stability_bar_time(model, iterations));
-    double limit = ck_stability_drag_time(model, 0.02), allowed = 0.005 * iterations / ck_stability_lightness(model);
+        return fmin(bending, fmin(ck_stability_drag_time(model, 0.02), ck_stability_bar_time(model, iterations)));
+    double limit = fmin(bending, ck_stability_drag_time(model, 0.02)),
+           allowed = 0.005 * iterations / ck_stability_lightness(model);
     for (int i = 0; i < model->spring_count; i++) {
         double k = model->springs[i].stiffness, c = model->springs[i].damping;
         limit = fmin(limit, 2 * allowed / (c + sqrt(c * c + 4 * k * allowed)));
@@ -102,6 +148,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                                         : "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations",
                                      CK_APPROXIMATE});
     }
+    ck_ledger_add_bending(ledger, model, "compliance", "1/(s*dt^2) of each hinge's vector", CK_APPROXIMATE);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
                                              model->springs[0].damping * compliance_of(&model->springs[0], used) / dt,
@@ -132,7 +179,8 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     size_t springs = (size_t)model->spring_count;
     native->compliance = malloc(sizeof(double) * springs + 1);
     native->gamma = malloc(sizeof(double) * springs + 1);
-    if (!native->compliance || !native->gamma) {
+    if (model->hinge_count) native->bending = malloc(3 * sizeof(double) * (size_t)model->hinge_count);
+    if (!native->compliance || !native->gamma || (model->hinge_count && !native->bending)) {
         ck_native_destroy(native);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
@@ -210,7 +258,7 @@ const ck_Engine ck_native_xpbd = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_XPBD,
-    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING,
     .settings = settings,
     .order = 1,
     .rest_order = 2,

@@ -108,6 +108,23 @@ static void read_colliders(Server *server) {
     }
 }
 
+static void read_hinges(Server *server) {
+    ck_Model *model = &server->model;
+    model->hinge_count = count(server);
+    model->hinges = allocate((size_t)model->hinge_count, sizeof *model->hinges);
+    for (int i = 0; i < model->hinge_count; i++) {
+        ck_Hinge *hinge = &model->hinges[i];
+        for (int k = 0; k < 4; k++) {
+            hinge->particles[k] = (int)number(server);
+            if (hinge->particles[k] < -1 || hinge->particles[k] >= model->particle_count)
+                fail("a hinge of no particle");
+        }
+        for (int k = 0; k < 4; k++) hinge->weights[k] = number(server);
+        hinge->stiffness = number(server);
+        hinge->rest = number(server);
+    }
+}
+
 static void read_setting(Server *server) {
     if (!next_word(server)) fail("the scene ends within a setting");
     const ck_Setting *setting = ck_setting_find(server->engine->settings, server->word);
@@ -124,6 +141,7 @@ static unsigned terms_of(const ck_Model *model) {
         if (isinf(model->springs[i].stiffness)) terms |= CK_TERM_RIGID;
         if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
     }
+    if (model->hinge_count) terms |= CK_TERM_BENDING;
     if (memcmp(model->gravity, none, sizeof none)) terms |= CK_TERM_GRAVITY;
     if (memcmp(model->force, none, sizeof none)) terms |= CK_TERM_FORCE;
     if (model->drag > 0) terms |= CK_TERM_DRAG;
@@ -158,6 +176,8 @@ static void read_scene(Server *server) {
             read_particles(server);
         else if (!strcmp(word, "springs"))
             read_springs(server);
+        else if (!strcmp(word, "hinges"))
+            read_hinges(server);
         else if (!strcmp(word, "colliders"))
             read_colliders(server);
         else if (!strcmp(word, "setting"))

@@ -47,6 +47,15 @@ typedef struct ck_SceneNetworkSpring {
     char *kind;                      // structural, shear, bend; NULL: structural
 } ck_SceneNetworkSpring;
 
+// A hinge with values of its own.
+typedef struct ck_SceneHinge {
+    uint32_t *particles; // 3 or 4
+    uint32_t particles_count;
+    double *weights; // 1/m
+    uint32_t weights_count;
+    double stiffness, rest; // N·m, rad
+} ck_SceneHinge;
+
 typedef struct ck_SceneNetwork {
     ck_SceneNode *nodes;
     uint32_t nodes_count;
@@ -56,6 +65,8 @@ typedef struct ck_SceneNetwork {
     uint32_t springs_count;
     uint32_t (*triangles)[3]; // faces, which are drawn
     uint32_t triangles_count;
+    ck_SceneHinge *hinges;
+    uint32_t hinges_count;
     double size, spacing; // m; 0: those of its nodes and springs
 } ck_SceneNetwork;
 
@@ -64,6 +75,11 @@ typedef struct ck_SceneSprings {
     double prestretch;                      // strain at the start: rest length = length/(1 + prestretch)
     bool rigid;                             // springs become bars of fixed length
 } ck_SceneSprings;
+
+typedef struct ck_SceneBending {
+    double stiffness; // N·m of a cloth or mesh, N·m² of a rope
+    char *rest;       // flat or start; NULL: flat
+} ck_SceneBending;
 
 typedef struct ck_SceneNoise {
     double amplitude; // m
@@ -115,6 +131,7 @@ typedef struct ck_SceneFile {
     ck_SceneNetwork *network;
     ck_SceneMesh *mesh;
     ck_SceneSprings *springs;
+    ck_SceneBending *bending;
     char **pins;
     uint32_t pins_count;
     ck_SceneNoise *noise;

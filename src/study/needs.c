@@ -81,6 +81,15 @@ static void drop_bend(Reduced *reduced, int collider) {
     drop_own(reduced, "bend");
 }
 
+static bool has_bending(const ck_SceneFile *file) {
+    return (file->bending && file->bending->stiffness > 0) || (file->network && file->network->hinges_count);
+}
+static void drop_bending(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->file.bending = NULL;
+    reduced->network.hinges_count = 0;
+}
+
 static bool has_damping(const ck_SceneFile *file) {
     bool has = file->springs && file->springs->damping > 0;
     for (uint32_t i = 0; file->network && i < file->network->springs_count; i++)
@@ -163,7 +172,7 @@ static bool is_halvable(const ck_SceneFile *file) {
 static const char *not_halved(const ck_SceneFile *file) {
     // pins by number would be others then
     for (uint32_t i = 0; i < file->pins_count; i++)
-        if (strpbrk(file->pins[i], "0123456789")) return "its pins are numbered, and would be others";
+        if (file->pins[i][strspn(file->pins[i], "0123456789:")] == 0) return "its pins are numbered, and would be others";
     if (file->release_count) return "it lets pins go";
     return halved_share(file) > 0 ? NULL : "no coarser grid of square cells has its size";
 }
@@ -209,6 +218,7 @@ static const struct {
 } terms[] = {
     {"shear", has_shear, drop_shear, false, false, NULL},
     {"bend", has_bend, drop_bend, false, false, NULL},
+    {"bending", has_bending, drop_bending, false, false, NULL},
     {"spring damping", has_damping, drop_damping, false, false, NULL},
     {"drag", has_drag, drop_drag, false, false, NULL},
     {"friction", has_friction, drop_friction, false, false, NULL},

@@ -1,5 +1,6 @@
 #include "equilibrium.h"
 
+#include "hinges.h"
 #include "process.h"
 
 #include "metric.h"
@@ -9,6 +10,7 @@
 #include "time_scale.h"
 #include "vector.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
@@ -28,6 +30,16 @@ typedef struct Newton {
     double *position, *trial; // [3*n]
 } Newton;
 
+static void subtract_hinge_forces(const ck_Model *model, const double *position, double *gradient) {
+    for (int i = 0; i < model->hinge_count; i++) {
+        const ck_Hinge *hinge = &model->hinges[i];
+        const ck_HingeState state = ck_hinge_state(hinge, position);
+        for (int k = 0; k < 4; k++)
+            if (hinge->particles[k] >= 0)
+                ck_add_scaled(gradient + 3 * hinge->particles[k], hinge->weights[k] * state.pull, state.vector);
+    }
+}
+
 // Energy, and its gradient over all coordinates, pinned ones too, where gradient is not NULL.
 static double energy_of(const ck_Model *model, const double *position, double *gradient) {
     double energy = 0;
@@ -42,6 +54,8 @@ static double energy_of(const ck_Model *model, const double *position, double *g
         ck_add_scaled(gradient + 3 * spring->a, -spring->stiffness * stretch / length, d);
         ck_add_scaled(gradient + 3 * spring->b, spring->stiffness * stretch / length, d);
     }
+    energy += ck_hinges_energy(model, position);
+    if (gradient) subtract_hinge_forces(model, position, gradient);
     for (int i = 0; i < model->particle_count; i++) {
         double field[3], moved[3];
         if (model->pinned[i]) continue;
@@ -51,6 +65,14 @@ static double energy_of(const ck_Model *model, const double *position, double *g
         if (gradient) ck_add_scaled(gradient + 3 * i, -model->mass[i], field);
     }
     return energy;
+}
+
+double ck_equilibrium_tolerance(const ck_Model *model) {
+    double stiffest = 0;
+    for (int i = 0; i < model->spring_count; i++) stiffest = fmax(stiffest, model->springs[i].stiffness);
+    const double rounding =
+        DBL_EPSILON * stiffest * model->size * sqrt(3.0 * model->particle_count) / ck_stability_load(model);
+    return fmax(CK_EQUILIBRIUM_RESIDUAL, rounding);
 }
 
 double ck_equilibrium_energy(const ck_Model *model, const double *position) {
@@ -86,6 +108,23 @@ static void add_block(Newton *newton, int row, int column, const double *block, 
         }
 }
 
+// w_i·w_j·(pull·I + turn·v·vᵀ) for each pair of a hinge's particles.
+static void add_hinge(Newton *newton, const ck_Hinge *hinge) {
+    const ck_HingeState state = ck_hinge_state(hinge, newton->position);
+    double block[9];
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            block[3 * row + column] =
+                state.turn * state.vector[row] * state.vector[column] + (row == column ? state.pull : 0);
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k <= i; k++) {
+            if (hinge->particles[i] < 0 || hinge->particles[k] < 0) continue;
+            const int a = newton->unknown[hinge->particles[i]], b = newton->unknown[hinge->particles[k]];
+            if (a >= 0 && b >= 0)
+                add_block(newton, a > b ? a : b, a > b ? b : a, block, hinge->weights[i] * hinge->weights[k]);
+        }
+}
+
 // k·[n·nᵀ + (1 − L/l)·(I − n·nᵀ)] of every spring, and shift on the diagonal.
 static void assemble(Newton *newton, double shift) {
     const ck_Model *model = newton->model;
@@ -104,6 +143,7 @@ static void assemble(Newton *newton, double shift) {
         if (b >= 0) add_block(newton, b, b, block, 1);
         if (a >= 0 && b >= 0) add_block(newton, a > b ? a : b, a > b ? b : a, block, -1);
     }
+    for (int i = 0; i < model->hinge_count; i++) add_hinge(newton, &model->hinges[i]);
     const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int i = 0; i < newton->unknowns; i++) add_block(newton, i, i, identity, shift);
 }
@@ -135,7 +175,7 @@ static ck_Status start_newton(Newton *newton, const ck_Model *model, const doubl
     for (size_t i = 0; i < count; i++) newton->unknown[i] = model->pinned[i] ? -1 : newton->unknowns++;
     for (int i = 0; i < model->spring_count; i++) newton->scale = fmax(newton->scale, model->springs[i].stiffness);
     size_t size = 3 * (size_t)newton->unknowns,
-           entries = 21 * (size_t)model->spring_count + 6 * (size_t)newton->unknowns;
+           entries = 21 * (size_t)model->spring_count + 78 * (size_t)model->hinge_count + 6 * (size_t)newton->unknowns;
     newton->triplet = cholmod_allocate_triplet(size, size, entries, -1, CHOLMOD_REAL, &newton->common);
     newton->gradient = cholmod_allocate_dense(size, 1, size, CHOLMOD_REAL, &newton->common);
     return newton->triplet && newton->gradient ? CK_OK : CK_NO_MEMORY;
@@ -235,7 +275,7 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
     equilibrium->position = newton.position;
     newton.position = NULL;
     for (int i = 0; i < 3 * model->particle_count; i++) equilibrium->position[i] += model->position[i % 3];
-    if (!(equilibrium->residual <= CK_EQUILIBRIUM_RESIDUAL) || !equilibrium->is_minimum)
+    if (!(equilibrium->residual <= ck_equilibrium_tolerance(model)) || !equilibrium->is_minimum)
         status =
             ck_fail(error, CK_REFUSED, "%s: no stable equilibrium: Newton stopped at %.2g of the load%s", model->name,
                     equilibrium->residual, equilibrium->is_minimum ? "" : ", where the energy has no minimum");

@@ -9,6 +9,10 @@
 // The largest residual, as a share of the total weight, that counts as equilibrium.
 #define CK_EQUILIBRIUM_RESIDUAL 1e-10
 
+// The residual that a model's positions can come to: that share, or where springs are so stiff that doubles cannot tell
+// their lengths that well, the rounding of coordinates times the stiffest spring: ε·k·size·√(3n) / load.
+double ck_equilibrium_tolerance(const ck_Model *model);
+
 typedef struct ck_Equilibrium {
     double *position; // [3*n] m
     double residual;  // |Σ force| over free particles / total load
@@ -17,7 +21,7 @@ typedef struct ck_Equilibrium {
     bool is_minimum;  // the Hessian at position is positive definite
 } ck_Equilibrium;
 
-// Minimises ½k(l − L)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation. The full Hessian,
+// Minimises ½k(l − L)² + ½s(angle − rest)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation. The full Hessian,
 // with μ·I added only where it is not positive definite (slack springs make it so); line search on the energy.
 //   start  [3*n] m
 // Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders or no pins, or Newton does not get there.

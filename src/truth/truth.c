@@ -1,5 +1,6 @@
 #include "truth.h"
 
+#include "bending_forms.h"
 #include "capstan_path.h"
 #include "contact_forms.h"
 #include "motion_forms.h"
@@ -33,6 +34,9 @@ static const ck_TruthForm forms[] = {
     {"catenary", CLOSED,
      "discrete elastic catenary: l_i = L + |T_i|/k, T_i = T_0 - sum of the weights before, shot to the far pin", true,
      .at = ck_truth_catenary, .off = ck_truth_catenary_off},
+    {"cantilever", CLOSED,
+     "elastica: EI*theta'' = -(w*(L - s) + P)*cos(theta), theta(0) given, theta'(L) = 0, shot from the tip", true,
+     .at = ck_truth_cantilever, .off = ck_truth_cantilever_off},
     {"free_fall", CLOSED, "x = x_0 + v_0*t + a*t^2/2", false, .at = ck_truth_free_fall},
     {"terminal_speed", CLOSED, "v = v_t + (v_0 - v_t)*exp(-drag*t), v_t = a/drag", false,
      .at = ck_truth_terminal_speed},

@@ -29,6 +29,19 @@ static const struct {
      ":2:22:", "unknown key spaceing in rope; did you mean spacing?; known here: particles"},
     {"missing body", "name: r\n" TIME, ":1:1:", "needs one body"},
     {"two bodies", ROPE "cloth: {rows: 2, columns: 2, spacing: 1, mass: 1}\n" TIME, ":4:1:", "both rope and cloth"},
+    {"bending of a bare network", NETWORK("[[0, 1]]") "bending: {stiffness: 1}\n",
+     ":7:10:", "a network bends at its faces"},
+    {"bending to somewhere", ROPE TIME "bending: {stiffness: 1, rest: curled}\n",
+     ":5:31:", "bending.rest is curled; it must be flat or start"},
+    {"hinge of too few weights",
+     "name: n\nnetwork:\n  nodes: [{at: [0, 0, 0], mass: 1}]\n  hinges: [{nodes: [0, 0, 0, 0], weights: [1, 1, 1], "
+     "stiffness: 1}]\n" TIME,
+     ":4:12:", "it has 4 nodes and 3 weights; give a weight for each"},
+    {"hinge of nobody",
+     "name: n\nnetwork:\n  nodes: [{at: [0, 0, 0], mass: 1}]\n  hinges: [{nodes: [0, 0, 7], weights: [1, 1, 1], "
+     "stiffness: 1}]\n" TIME,
+     ":4:12:", "hinge of node 7, which does not exist"},
+    {"cantilever that is none", ROPE TIME "truth: cantilever\n", ":5:8:", "its first two particles pinned alone"},
     {"mesh that is not there", "name: m\nmesh: {file: none.obj, mass: 1}\n" TIME, ":2:14:", "none.obj: No such file"},
     {"mesh of both masses", "name: m\nmesh: {file: none.obj, mass: 1, density: 1}\n" TIME,
      ":2:7:", "mesh has both mass and density; keep one"},
@@ -250,6 +263,7 @@ static void test_every_key(void **state) {
         "name: all\nabout: every key there is\n"
         "cloth: {rows: 3, columns: 4, spacing: 0.5, mass: 12, origin: [1, 2, 3], across: [0, 0, 2], down: [0, -1, 0]}\n"
         "springs: {stiffness: 10, damping: 0.1, shear: 5, bend: 1, rigid: false}\n"
+        "bending: {stiffness: 0.2, rest: flat}\n"
         "pins: [top_edge, 2:3, 5]\nnoise: {amplitude: 0.01, seed: 7}\ngravity: [0, -10, 0]\ndrag: 2\nforce: [1, 0, "
         "0]\nvelocity: [0, 0, 1]\n"
         "colliders: [{plane: {point: [0, -1, 0], normal: [0, 2, 0], restitution: 0.6, friction: 0.3}},\n"
@@ -261,6 +275,10 @@ static void test_every_key(void **state) {
     assert_int_equal(model->pin_count, 6); // four, one, one
     // 9 + 8 structural, 2 × 6 shear, 6 + 4 bend
     assert_int_equal(model->spring_count, 17 + 12 + 10);
+    // 3 × 2 along rows, 1 × 4 along columns, 6 squares
+    assert_int_equal(model->hinge_count, 6 + 4 + 6);
+    assert_near("twist", model->hinges[0].stiffness, 0.4, 0);
+    assert_near("border", model->hinges[1].stiffness, 0.1, 0);
     assert_int_equal(model->frame_count, 8);
     assert_near("size", model->size, 1.5, 0);
     assert_near("mass", model->mass[3], 1, 0);

@@ -12,6 +12,10 @@ ck_Status ck_model_build_body(ck_Model *model, const ck_Scene *scene, ck_Error *
 // The same of a mesh, from its file.
 ck_Status ck_model_build_mesh(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 
+// Fills the hinges of a body whose particles and faces are there, where the scene bends. Errors: CK_BAD_INPUT,
+// CK_NO_MEMORY.
+ck_Status ck_model_build_hinges(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
 // Room for so many particles and springs. Errors: CK_BAD_INPUT where there are too many, CK_NO_MEMORY.
 ck_Status ck_body_allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
                            ck_Error *error);

@@ -29,6 +29,9 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"springs.shear", CK_RANGE_NOT_NEGATIVE},
     {"springs.bend", CK_RANGE_NOT_NEGATIVE},
     {"springs.prestretch", CK_RANGE_NOT_NEGATIVE},
+    {"bending.stiffness", CK_RANGE_NOT_NEGATIVE},
+    {"network.hinges[].stiffness", CK_RANGE_POSITIVE},
+    {"network.hinges[].rest", CK_RANGE_NOT_NEGATIVE},
     {"noise.amplitude", CK_RANGE_NOT_NEGATIVE},
     {"drag", CK_RANGE_NOT_NEGATIVE},
     {"colliders[].plane.restitution", CK_RANGE_UNIT},
@@ -106,6 +109,15 @@ static const cyaml_schema_field_t network_spring_fields[] = {
 static const cyaml_schema_value_t network_spring = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneNetworkSpring, network_spring_fields)};
 
+static const cyaml_schema_field_t hinge_fields[] = {
+    CYAML_FIELD_SEQUENCE("nodes", REQUIRED | CYAML_FLAG_POINTER, ck_SceneHinge, particles, &index_entry, 3, 4),
+    CYAML_FIELD_SEQUENCE("weights", REQUIRED | CYAML_FLAG_POINTER, ck_SceneHinge, weights, &number, 3, 4),
+    CYAML_FIELD_FLOAT("stiffness", REQUIRED, ck_SceneHinge, stiffness),
+    CYAML_FIELD_FLOAT("rest", OPTIONAL, ck_SceneHinge, rest),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t hinge = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneHinge, hinge_fields)};
+
 static const cyaml_schema_field_t network_fields[] = {
     CYAML_FIELD_SEQUENCE("nodes", REQUIRED | CYAML_FLAG_POINTER, ck_SceneNetwork, nodes, &node, 1,
                          CK_SCENE_MAX_PARTICLES),
@@ -114,6 +126,8 @@ static const cyaml_schema_field_t network_fields[] = {
     CYAML_FIELD_SEQUENCE("springs", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, springs, &network_spring, 0,
                          CK_SCENE_MAX_PARTICLES),
     CYAML_FIELD_SEQUENCE("triangles", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, triangles, &index_triple, 0,
+                         CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_SEQUENCE("hinges", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetwork, hinges, &hinge, 0,
                          CK_SCENE_MAX_PARTICLES),
     CYAML_FIELD_FLOAT("size", OPTIONAL, ck_SceneNetwork, size),
     CYAML_FIELD_FLOAT("spacing", OPTIONAL, ck_SceneNetwork, spacing),
@@ -127,6 +141,12 @@ static const cyaml_schema_field_t springs_fields[] = {
     CYAML_FIELD_FLOAT("bend", OPTIONAL, ck_SceneSprings, bend),
     CYAML_FIELD_FLOAT("prestretch", OPTIONAL, ck_SceneSprings, prestretch),
     CYAML_FIELD_BOOL("rigid", OPTIONAL, ck_SceneSprings, rigid),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t bending_fields[] = {
+    CYAML_FIELD_FLOAT("stiffness", REQUIRED, ck_SceneBending, stiffness),
+    CYAML_FIELD_STRING_PTR("rest", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneBending, rest, 1, 20),
     CYAML_FIELD_END,
 };
 
@@ -195,6 +215,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING_PTR("network", OPTIONAL, ck_SceneFile, network, network_fields),
     CYAML_FIELD_MAPPING_PTR("mesh", OPTIONAL, ck_SceneFile, mesh, mesh_fields),
     CYAML_FIELD_MAPPING_PTR("springs", OPTIONAL, ck_SceneFile, springs, springs_fields),
+    CYAML_FIELD_MAPPING_PTR("bending", OPTIONAL, ck_SceneFile, bending, bending_fields),
     CYAML_FIELD_SEQUENCE("pins", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, pins, &text, 0, CYAML_UNLIMITED),
     CYAML_FIELD_MAPPING_PTR("noise", OPTIONAL, ck_SceneFile, noise, noise_fields),
     CYAML_FIELD_SEQUENCE_FIXED("gravity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, gravity, &number, 3),

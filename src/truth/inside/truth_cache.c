@@ -29,6 +29,13 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         const double numbers[5] = {spring->a, spring->b, spring->rest, spring->stiffness, spring->damping};
         value = ck_hash(value, numbers, sizeof numbers);
     }
+    for (int i = 0; i < model->hinge_count; i++) {
+        const ck_Hinge *hinge = &model->hinges[i];
+        const double numbers[2] = {hinge->stiffness, hinge->rest};
+        value = ck_hash(value, hinge->particles, sizeof hinge->particles);
+        value = ck_hash(value, hinge->weights, sizeof hinge->weights);
+        value = ck_hash(value, numbers, sizeof numbers);
+    }
     for (int i = 0; i < model->release_count; i++) {
         const ck_Release *release = &model->releases[i];
         value = ck_hash(value, &release->frame, sizeof release->frame);
@@ -69,7 +76,7 @@ static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *m
         value = ck_hash(value, path->data, path->bytes);
         if (i || !loaded->form->is_static) continue;
         double residual = ck_equilibrium_residual(model, path->data);
-        if (!(residual >= 0 && residual <= CK_EQUILIBRIUM_RESIDUAL)) return false;
+        if (!(residual >= 0 && residual <= ck_equilibrium_tolerance(model))) return false;
     }
     return value == header->data && fgetc(file) == EOF;
 }
