@@ -1,9 +1,9 @@
 #include "ledger.h"
 
 #include "hinges.h"
-
 #include "model.h"
 
+#include <math.h>
 #include <stddef.h>
 
 const char *const ck_match_names[] = {"exact", "approximate", "impossible"};
@@ -58,4 +58,23 @@ void ck_ledger_add_bending(ck_Ledger *ledger, const ck_Model *model, const char 
     if (model->hinge_count)
         ck_ledger_add(ledger, (ck_LedgerRow){"bending stiffness", model->bending, ck_hinges_unit(model), parameter,
                                              model->hinges[0].stiffness, formula, match});
+}
+
+void ck_ledger_add_material(ck_Ledger *ledger, const ck_Model *model) {
+    if (!(model->membrane > 0)) return;
+    const bool is_grid = model->columns > 0, is_isotropic = fabs(model->poisson - 1.0 / 3) < 0.01;
+    double stiffest = 0;
+    for (int i = 0; i < model->spring_count; i++)
+        if (model->springs[i].kind == CK_STRUCTURAL) stiffest = fmax(stiffest, model->springs[i].stiffness);
+    ck_ledger_add(ledger, (ck_LedgerRow){"membrane stiffness", model->membrane, "N/m", "stiffness", stiffest,
+                                         is_grid ? "k = Eh/(1 + nu) of rows and columns, half at borders"
+                                                 : "k = Eh*(A + A')/l^2 of an edge, sqrt(3)/2*Eh of equilateral faces",
+                                         CK_EXACT});
+    ck_ledger_add(ledger,
+                  (ck_LedgerRow){"Poisson's ratio", model->poisson, "1", "shear stiffness",
+                                 is_grid ? model->poisson * model->membrane / (1 - model->poisson * model->poisson) : 0,
+                                 !is_grid       ? "1/3 of triangles, whatever k"
+                                 : is_isotropic ? "kd = nu*Eh/(1 - nu^2): isotropic"
+                                                : "kd = nu*Eh/(1 - nu^2): along the threads; isotropic at 1/3 only",
+                                 is_grid && !is_isotropic ? CK_APPROXIMATE : CK_EXACT});
 }

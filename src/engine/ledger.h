@@ -46,6 +46,9 @@ void ck_ledger_add_colliders(ck_Ledger *ledger, const struct ck_Model *model, ck
 // engine keeps 1/m.
 void ck_ledger_add_masses(ck_Ledger *ledger, const struct ck_Model *model, ck_LedgerRow mass, bool takes_inverse);
 
+// Rows on the material that a scene's springs are made of: Young's modulus times thickness, and Poisson's ratio.
+void ck_ledger_add_material(ck_Ledger *ledger, const struct ck_Model *model);
+
 // A row on bending, where the model bends: what the stiffness is of the first hinge, N*m.
 void ck_ledger_add_bending(ck_Ledger *ledger, const struct ck_Model *model, const char *parameter, const char *formula,
                            ck_Match match);

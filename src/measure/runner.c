@@ -34,6 +34,7 @@ static void *create(const Job *job) {
     report->ledger.count = 0;
     report->status = ck_engine_create(job->run->engine, &state, job->run->model, &job->run->wanted, &report->used,
                                       &report->ledger, &report->error);
+    if (!report->status) ck_ledger_add_material(&report->ledger, job->run->model);
     return state;
 }
 

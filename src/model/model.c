@@ -159,7 +159,7 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
         {"springs.stiffness", springs->stiffness, springs->rigid, "bars that are rigid have none; keep one of the two"},
         {"springs.damping", springs->damping, springs->rigid, "rigid bars do not stretch, so that it damps nothing"},
         {"springs.shear", springs->shear, model->body != CK_CLOTH,
-         "only a cloth has diagonals; add bars to a network, or leave it out"},
+         "only a cloth of squares has diagonals; add bars to a network, or leave it out"},
         {"springs.bend", springs->bend, model->body == CK_NETWORK || model->body == CK_MESH,
          "only a cloth and a rope have second neighbours; leave it out"},
         {"springs.damping", springs->damping, is_none, "there is no spring; give a stiffness, or leave it out"},
@@ -254,6 +254,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (!status) status = set_time(model, scene, error);
     if (!status) status = ck_model_build_body(model, scene, error);
     if (!status) status = check_springs(model, scene, error);
+    if (!status) status = ck_model_set_material(model, scene, error);
     if (!status) status = ck_model_build_hinges(model, scene, error);
     if (!status) status = set_pins(model, scene, error);
     if (!status) status = set_releases(model, scene, error);

@@ -91,6 +91,7 @@ typedef struct ck_Model {
     int spring_count;
     ck_Hinge *hinges;
     int hinge_count;
+    double membrane, poisson; // N/m and 1, of a scene's material; 0: it has none
     double bending;      // N·m of a sheet, N·m² of a rope, as the scene gives it; 0: none, or hinges of their own
     int (*triangles)[3]; // [triangle_count] particles of a mesh's faces, else none
     int triangle_count;

@@ -31,6 +31,8 @@ typedef enum ck_LayoutName {
     CK_STABILITY,
     CK_TUNE,
     CK_NEEDS,
+    CK_REFINE,
+    CK_REFINE_SUMMARY,
     CK_BENCH,
     CK_CLAIMS,
     CK_QUIRKS,

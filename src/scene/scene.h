@@ -13,7 +13,8 @@
 
 typedef struct ck_SceneCloth {
     uint32_t rows, columns;
-    double spacing, mass; // m between neighbours; kg of the whole cloth
+    double spacing, mass; // m between neighbours; kg of the whole cloth, 0: the material's
+    char *pattern;        // square, cross or triangle; NULL: square
     double *origin;       // [3] m, row 0 column 0; NULL: (0, 0, 0)
     double *across;       // [3] direction of growing column; NULL: (1, 0, 0)
     double *down;         // [3] direction of growing row; NULL: (0, −1, 0)
@@ -76,8 +77,17 @@ typedef struct ck_SceneSprings {
     bool rigid;                             // springs become bars of fixed length
 } ck_SceneSprings;
 
+// A fabric, in place of springs: the same at any resolution.
+typedef struct ck_SceneMaterial {
+    double membrane;    // N/m, Young's modulus times thickness
+    double *poisson;    // 1; NULL: a third, at which all patterns are isotropic
+    double bending;     // N·m
+    double density;     // kg/m²; 0: the body's mass
+    double retardation; // s: a spring's damping over its stiffness
+} ck_SceneMaterial;
+
 typedef struct ck_SceneBending {
-    double stiffness; // N·m of a cloth or mesh, N·m² of a rope
+    double stiffness; // N·m of a cloth or mesh, N·m² of a rope; 0: the material's
     char *rest;       // flat or start; NULL: flat
 } ck_SceneBending;
 
@@ -132,6 +142,7 @@ typedef struct ck_SceneFile {
     ck_SceneMesh *mesh;
     ck_SceneSprings *springs;
     ck_SceneBending *bending;
+    ck_SceneMaterial *material;
     char **pins;
     uint32_t pins_count;
     ck_SceneNoise *noise;

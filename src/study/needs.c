@@ -1,5 +1,7 @@
 #include "needs.h"
 
+#include "resize.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +18,7 @@ typedef struct Reduced {
     ck_SceneCollider colliders[CK_NEEDS_MOST];
     ck_ScenePlane planes[CK_NEEDS_MOST];
     ck_SceneSphere spheres[CK_NEEDS_MOST];
-    double force[3];
+    ck_SceneResized resized;
 } Reduced;
 
 // Copies what a change may touch, so that the scene stays as it is. False without memory.
@@ -170,43 +172,15 @@ static bool is_halvable(const ck_SceneFile *file) {
 }
 
 static const char *not_halved(const ck_SceneFile *file) {
-    // pins by number would be others then
-    for (uint32_t i = 0; i < file->pins_count; i++)
-        if (file->pins[i][strspn(file->pins[i], "0123456789:")] == 0) return "its pins are numbered, and would be others";
-    if (file->release_count) return "it lets pins go";
-    return halved_share(file) > 0 ? NULL : "no coarser grid of square cells has its size";
+    const double share = halved_share(file);
+    return share > 0 ? ck_scene_resize_refusal(file, share) : "no coarser grid of square cells has its size";
 }
 
-static uint32_t scale_count(uint32_t count, double share) {
-    return (uint32_t)round((count - 1) * share) + 1;
-}
-
-// The body keeps its size, its mass and what pushes it. A rope's springs, half as many in a row, have k and c in
-// proportion to their number; a sheet's, half as many in a row and side by side, keep them.
 static void halve(Reduced *reduced, int collider) {
     (void)collider;
-    double share = halved_share(&reduced->file), particles = 1, left = 1;
-    if (reduced->file.cloth) {
-        ck_SceneCloth *cloth = &reduced->cloth;
-        particles = (double)cloth->rows * cloth->columns;
-        cloth->rows = scale_count(cloth->rows, share);
-        cloth->columns = scale_count(cloth->columns, share);
-        cloth->spacing /= share;
-        left = (double)cloth->rows * cloth->columns;
-    } else {
-        ck_SceneRope *rope = &reduced->rope;
-        particles = rope->particles;
-        rope->particles = scale_count(rope->particles, share);
-        rope->spacing /= share;
-        left = rope->particles;
-        reduced->springs.stiffness *= share;
-        reduced->springs.bend *= share;
-        reduced->springs.damping *= share;
-    }
-    for (int axis = 0; axis < 3 && reduced->file.force; axis++) {
-        reduced->force[axis] = reduced->file.force[axis] * particles / left;
-        if (axis == 2) reduced->file.force = reduced->force;
-    }
+    const ck_SceneFile from = reduced->file;
+    ck_scene_resize(&reduced->resized, &from, halved_share(&from));
+    reduced->file = reduced->resized.file;
 }
 
 static const struct {

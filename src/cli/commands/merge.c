@@ -2,6 +2,7 @@
 #include "files.h"
 #include "needs.h"
 #include "precision.h"
+#include "refine.h"
 #include "stability_study.h"
 
 #include <limits.h>
@@ -18,7 +19,8 @@ typedef struct Kind {
 
 static const Kind studies[] = {{&ck_command_precision, ck_precision_value},
                                {&ck_command_stability, ck_stability_value},
-                               {&ck_command_needs, ck_needs_value}};
+                               {&ck_command_needs, ck_needs_value},
+                               {&ck_command_refine, ck_refine_value}};
 #define STUDIES (sizeof studies / sizeof *studies)
 
 // Runs the parts' own command: all its cases are there, so that it only writes what one run would have written.

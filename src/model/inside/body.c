@@ -72,60 +72,11 @@ static ck_Status build_rope(ck_Model *model, const ck_Scene *scene, ck_Error *er
     model->body = CK_ROPE;
     model->spacing = rope->spacing;
     model->size = rope->particles > 1 ? rope->spacing * (rope->particles - 1) : rope->spacing;
-    const ck_SceneSprings *springs = scene->file->springs;
+    const ck_SceneSprings *springs = ck_body_springs(scene);
     for (int i = 1; i < model->particle_count && springs; i++)
         ck_body_add_spring(model, springs, i - 1, i, rope->spacing, CK_STRUCTURAL);
     for (int i = 2; i < model->particle_count && springs; i++)
         ck_body_add_spring(model, springs, i - 2, i, 2 * rope->spacing, CK_BEND);
-    return CK_OK;
-}
-
-// the springs that start at a node, towards growing row and column
-static const struct {
-    int row, column;
-    ck_SpringKind kind;
-} cloth_springs[] = {
-    {0, 1, CK_STRUCTURAL}, {1, 0, CK_STRUCTURAL}, {1, 1, CK_SHEAR}, {1, -1, CK_SHEAR}, {0, 2, CK_BEND}, {2, 0, CK_BEND},
-};
-#define CLOTH_SPRINGS (sizeof cloth_springs / sizeof *cloth_springs)
-
-static void add_cloth_springs(ck_Model *model, const ck_SceneCloth *cloth, const ck_SceneSprings *springs) {
-    int rows = (int)cloth->rows, columns = (int)cloth->columns;
-    for (size_t s = 0; s < CLOTH_SPRINGS; s++) {
-        double length = cloth->spacing * hypot(cloth_springs[s].row, cloth_springs[s].column);
-        for (int row = 0; row < rows; row++)
-            for (int column = 0; column < columns; column++) {
-                int to_row = row + cloth_springs[s].row, to_column = column + cloth_springs[s].column;
-                if (to_row >= rows || to_column >= columns || to_column < 0) continue;
-                ck_body_add_spring(model, springs, row * columns + column, to_row * columns + to_column, length,
-                                   cloth_springs[s].kind);
-            }
-    }
-}
-
-static ck_Status build_cloth(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-    const ck_SceneCloth *cloth = scene->file->cloth;
-    double across[3], down[3];
-    ck_Status status = ck_model_unit(across, or_default(cloth->across, across_default), scene, "cloth.across", error);
-    if (!status) status = ck_model_unit(down, or_default(cloth->down, down_default), scene, "cloth.down", error);
-    if (status) return status;
-    if (fabs(ck_dot(across, down)) > 1e-9)
-        return ck_scene_fail(scene, "cloth", error, "cloth.across and cloth.down must be at right angles");
-    double particles = (double)cloth->rows * cloth->columns;
-    status = ck_body_allocate(model, scene, "cloth", particles, CLOTH_SPRINGS * particles, error);
-    if (status) return status;
-    for (int i = 0; i < model->particle_count; i++) {
-        double *position = model->position + 3 * i;
-        memcpy(position, or_default(cloth->origin, origin_default), 3 * sizeof(double));
-        ck_add_scaled(position, cloth->spacing * (i % (int)cloth->columns), across);
-        ck_add_scaled(position, cloth->spacing * (i / (int)cloth->columns), down);
-        model->mass[i] = cloth->mass / particles;
-    }
-    model->body = CK_CLOTH;
-    model->columns = (int)cloth->columns;
-    model->spacing = cloth->spacing;
-    model->size = cloth->spacing * fmax(1, fmax(cloth->rows, cloth->columns) - 1);
-    if (scene->file->springs) add_cloth_springs(model, cloth, scene->file->springs);
     return CK_OK;
 }
 
@@ -307,7 +258,7 @@ void ck_model_add_noise(ck_Model *model, const ck_Scene *scene) {
 }
 
 ck_Status ck_model_build_body(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-    if (scene->file->cloth) return build_cloth(model, scene, error);
+    if (scene->file->cloth) return ck_model_build_cloth(model, scene, error);
     if (scene->file->rope) return build_rope(model, scene, error);
     if (scene->file->mesh) return ck_model_build_mesh(model, scene, error);
     return build_network(model, scene, error);

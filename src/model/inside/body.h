@@ -9,12 +9,28 @@
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY.
 ck_Status ck_model_build_body(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 
-// The same of a mesh, from its file.
+// The same of a rectangle of cloth; and of a mesh, from its file.
+ck_Status ck_model_build_cloth(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 ck_Status ck_model_build_mesh(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 
 // Fills the hinges of a body whose particles and faces are there, where the scene bends. Errors: CK_BAD_INPUT,
 // CK_NO_MEMORY.
 ck_Status ck_model_build_hinges(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
+// The springs that a body is built with: the scene's or, where it has a material, of 1 N/m, which ck_model_set_material
+// changes. NULL: none.
+const ck_SceneSprings *ck_body_springs(const ck_Scene *scene);
+
+// The mass of a body that is given its own, or the material's density times an area. Errors: CK_BAD_INPUT at path
+// unless exactly one is given.
+ck_Status ck_body_mass(double *mass, const ck_Scene *scene, double own, double area, const char *path, ck_Error *error);
+
+// Gives springs and, on a grid, masses what the scene's material makes of them. Errors: CK_BAD_INPUT where the body
+// cannot have it.
+ck_Status ck_model_set_material(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
+// Shares the area of each face among its corners: into mass, times density, kg/m². Returns the sum, m².
+double ck_body_share_area(ck_Model *model, double density);
 
 // Room for so many particles and springs. Errors: CK_BAD_INPUT where there are too many, CK_NO_MEMORY.
 ck_Status ck_body_allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,

@@ -149,19 +149,23 @@ ck_Status ck_model_build_hinges(ck_Model *model, const ck_Scene *scene, ck_Error
     const ck_SceneBending *bending = scene->file->bending;
     const ck_SceneNetwork *network = scene->file->network;
     if (network && network->hinges_count && !bending) return take_own(model, scene, error);
-    if (!bending) return CK_OK;
+    const double of_material = scene->file->material ? scene->file->material->bending : 0;
+    const double stiffness = of_material > 0 ? of_material : bending ? bending->stiffness : 0;
+    if (!bending && !(stiffness > 0)) return CK_OK;
+    if (bending && of_material > 0 && bending->stiffness > 0)
+        return ck_scene_fail(scene, "bending.stiffness", error, "the material has a bending stiffness, too; keep one");
     if (network && (network->hinges_count || !network->triangles_count))
         return ck_scene_fail(scene, "bending", error,
                              network->hinges_count ? "the network has hinges of its own; keep one of the two"
                                                    : "a network bends at its faces; give network.triangles");
-    const char *rest = bending->rest ? bending->rest : "flat";
+    const char *rest = bending && bending->rest ? bending->rest : "flat";
     if (strcmp(rest, "flat") && strcmp(rest, "start"))
         return ck_scene_fail(scene, "bending.rest", error, "bending.rest is %s; it must be flat or start", rest);
-    if (!(bending->stiffness > 0)) return CK_OK;
-    model->bending = bending->stiffness;
-    ck_Status status = model->body == CK_ROPE    ? bend_rope(model, bending->stiffness)
-                       : model->body == CK_CLOTH ? bend_cloth(model, bending->stiffness)
-                                                 : bend_faces(model, bending->stiffness);
+    if (!(stiffness > 0)) return CK_OK;
+    model->bending = stiffness;
+    ck_Status status = model->body == CK_ROPE    ? bend_rope(model, stiffness)
+                       : model->body == CK_CLOTH ? bend_cloth(model, stiffness)
+                                                 : bend_faces(model, stiffness);
     for (int i = 0; i < model->hinge_count && !status; i++)
         if (!strcmp(rest, "start")) model->hinges[i].rest = ck_hinge_angle(&model->hinges[i], model->position);
     return status;

@@ -22,44 +22,31 @@ static ck_Status load(ck_Mesh *mesh, const ck_Scene *scene, ck_Error *error) {
     if (from->up && (strlen(from->up) != 1 || !strchr("xyz", *from->up)))
         return ck_scene_fail(scene, "mesh.up", error, "mesh.up is %s; it must be x, y or z", from->up);
     if (from->up) options.up = *from->up;
-    if ((from->mass > 0) == (from->density > 0))
-        return ck_scene_fail(scene, "mesh", error,
-                             from->mass > 0 ? "mesh has both mass and density; keep one"
-                                            : "mesh has neither mass nor density; it needs one of the two");
+    if (from->mass > 0 && from->density > 0)
+        return ck_scene_fail(scene, "mesh", error, "mesh has both mass and density; keep one");
+    double mass;
+    ck_Status status = ck_body_mass(&mass, scene, from->mass > 0 ? from->mass : from->density, 1, "mesh", error);
+    if (status) return status;
     ck_Error inner = {0};
     char *path = path_of(scene);
-    ck_Status status = path ? ck_mesh_load(mesh, path, &options, &inner) : CK_NO_MEMORY;
+    status = path ? ck_mesh_load(mesh, path, &options, &inner) : CK_NO_MEMORY;
     free(path);
     return status == CK_BAD_INPUT ? ck_scene_fail(scene, "mesh.file", error, "%s", inner.message) : status;
 }
 
-// Each particle's third of the faces around it, m², into mass. Returns the sum.
-static double share_area(ck_Model *model) {
-    double whole = 0;
-    for (int i = 0; i < model->triangle_count; i++) {
-        const int *corners = model->triangles[i];
-        double one[3], other[3], normal[3];
-        ck_subtract(one, model->position + 3 * corners[1], model->position + 3 * corners[0]);
-        ck_subtract(other, model->position + 3 * corners[2], model->position + 3 * corners[0]);
-        ck_cross(normal, one, other);
-        const double area = 0.5 * ck_length(normal);
-        whole += area;
-        for (int k = 0; k < 3; k++) model->mass[corners[k]] += area / 3;
-    }
-    return whole;
-}
-
 static ck_Status set_masses(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneMesh *from = scene->file->mesh;
-    const double area = share_area(model), density = from->mass > 0 ? from->mass / area : from->density;
-    for (int i = 0; i < model->particle_count; i++) {
-        model->mass[i] *= density;
+    const double area = ck_body_share_area(model, 1);
+    double mass;
+    ck_Status status =
+        ck_body_mass(&mass, scene, from->mass > 0 ? from->mass : from->density * area, area, "mesh", error);
+    ck_body_share_area(model, mass / area);
+    for (int i = 0; i < model->particle_count && !status; i++)
         if (!(model->mass[i] > 0))
-            return ck_scene_fail(scene, "mesh.file", error,
-                                 "vertex %d has no area around it, and so no mass; mend the faces there, or weld more",
-                                 i);
-    }
-    return CK_OK;
+            status =
+                ck_scene_fail(scene, "mesh.file", error,
+                              "vertex %d has no area around it, and so no mass; mend the faces there, or weld more", i);
+    return status;
 }
 
 // Takes over the groups of a mesh.
@@ -87,10 +74,11 @@ static ck_Status fill(ck_Model *model, const ck_Scene *scene, ck_Mesh *mesh, con
     model->triangles = mesh->triangles;
     model->triangle_count = mesh->triangle_count;
     mesh->triangles = NULL;
-    for (int i = 0; i < edge_count && scene->file->springs; i++) {
+    const ck_SceneSprings *springs = ck_body_springs(scene);
+    for (int i = 0; i < edge_count && springs; i++) {
         const int a = edges[i][0], b = edges[i][1];
-        ck_body_add_spring(model, scene->file->springs, a, b,
-                           ck_distance(model->position + 3 * a, model->position + 3 * b), CK_STRUCTURAL);
+        ck_body_add_spring(model, springs, a, b, ck_distance(model->position + 3 * a, model->position + 3 * b),
+                           CK_STRUCTURAL);
     }
     model->body = CK_MESH;
     ck_body_set_lengths(model, 0, 0);

@@ -34,6 +34,8 @@ static const ck_Chart charts[] = {
      "engine,time_step_s,stiffness_factor,status,predicted_step_s,iterations,rounding_step_s", 1080, 1100, false,
      ck_chart_select_stability},
     {"needs", "what the scene needs", "left_out,metric,excess", 860, 430, false, ck_chart_select_needs},
+    {"refine", "what converges as the mesh gets finer", "engine,spacing_m,value,metric", 1080, 430, false,
+     ck_chart_select_refine},
     {"size", "Cost against size", "engine,particles,time_s,metric", 1080, 480, true, ck_chart_select_size},
 };
 #define CHARTS ((int)(sizeof charts / sizeof *charts))

@@ -106,6 +106,25 @@ int ck_chart_select_needs(const ck_ReportData *data, const char *scene, FILE *ou
     return rows;
 }
 
+// Metrics of shape at each resolution.
+int ck_chart_select_refine(const ck_ReportData *data, const char *scene, FILE *out) {
+    static const char *const drawn[] = {"sag", "stretch_max", "stretch_rms"};
+    const ck_CsvTable *table = ck_report_table(data, CK_REFINE);
+    int rows = 0;
+    for (int row = 0; table && row < table->row_count; row++) {
+        bool is_shown = false;
+        for (size_t i = 0; i < sizeof drawn / sizeof *drawn; i++)
+            is_shown |= !strcmp(ck_csv_text_of(table, row, "metric"), drawn[i]);
+        const double spacing = ck_csv_number_of(table, row, "spacing_m"), value = ck_csv_number_of(table, row, "value");
+        if (!ck_report_is_of(table, row, scene) || !is_shown || !is_drawn(spacing) || !isfinite(value)) continue;
+        if (strcmp(ck_csv_text_of(table, row, "status"), "ok")) continue;
+        fprintf(out, "%s,%.9g,%.9g,%s\n", ck_csv_text_of(table, row, "engine"), spacing, value,
+                ck_csv_text_of(table, row, "metric"));
+        rows++;
+    }
+    return rows;
+}
+
 int ck_chart_select_size(const ck_ReportData *data, const char *scene, FILE *out) {
     (void)scene;
     const ck_CsvTable *table = ck_report_table(data, CK_BENCH);

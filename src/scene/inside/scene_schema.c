@@ -32,6 +32,11 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"bending.stiffness", CK_RANGE_NOT_NEGATIVE},
     {"network.hinges[].stiffness", CK_RANGE_POSITIVE},
     {"network.hinges[].rest", CK_RANGE_NOT_NEGATIVE},
+    {"material.membrane", CK_RANGE_POSITIVE},
+    {"material.poisson", CK_RANGE_UNIT},
+    {"material.bending", CK_RANGE_NOT_NEGATIVE},
+    {"material.density", CK_RANGE_POSITIVE},
+    {"material.retardation", CK_RANGE_NOT_NEGATIVE},
     {"noise.amplitude", CK_RANGE_NOT_NEGATIVE},
     {"drag", CK_RANGE_NOT_NEGATIVE},
     {"colliders[].plane.restitution", CK_RANGE_UNIT},
@@ -61,7 +66,8 @@ static const cyaml_schema_field_t cloth_fields[] = {
     CYAML_FIELD_UINT("rows", REQUIRED, ck_SceneCloth, rows),
     CYAML_FIELD_UINT("columns", REQUIRED, ck_SceneCloth, columns),
     CYAML_FIELD_FLOAT("spacing", REQUIRED, ck_SceneCloth, spacing),
-    CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneCloth, mass),
+    CYAML_FIELD_FLOAT("mass", OPTIONAL, ck_SceneCloth, mass),
+    CYAML_FIELD_STRING_PTR("pattern", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, pattern, 1, 20),
     CYAML_FIELD_SEQUENCE_FIXED("origin", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, origin, &number, 3),
     CYAML_FIELD_SEQUENCE_FIXED("across", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, across, &number, 3),
     CYAML_FIELD_SEQUENCE_FIXED("down", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneCloth, down, &number, 3),
@@ -145,8 +151,17 @@ static const cyaml_schema_field_t springs_fields[] = {
 };
 
 static const cyaml_schema_field_t bending_fields[] = {
-    CYAML_FIELD_FLOAT("stiffness", REQUIRED, ck_SceneBending, stiffness),
+    CYAML_FIELD_FLOAT("stiffness", OPTIONAL, ck_SceneBending, stiffness),
     CYAML_FIELD_STRING_PTR("rest", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneBending, rest, 1, 20),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t material_fields[] = {
+    CYAML_FIELD_FLOAT("membrane", REQUIRED, ck_SceneMaterial, membrane),
+    CYAML_FIELD_FLOAT_PTR("poisson", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneMaterial, poisson),
+    CYAML_FIELD_FLOAT("bending", OPTIONAL, ck_SceneMaterial, bending),
+    CYAML_FIELD_FLOAT("density", OPTIONAL, ck_SceneMaterial, density),
+    CYAML_FIELD_FLOAT("retardation", OPTIONAL, ck_SceneMaterial, retardation),
     CYAML_FIELD_END,
 };
 
@@ -215,6 +230,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING_PTR("network", OPTIONAL, ck_SceneFile, network, network_fields),
     CYAML_FIELD_MAPPING_PTR("mesh", OPTIONAL, ck_SceneFile, mesh, mesh_fields),
     CYAML_FIELD_MAPPING_PTR("springs", OPTIONAL, ck_SceneFile, springs, springs_fields),
+    CYAML_FIELD_MAPPING_PTR("material", OPTIONAL, ck_SceneFile, material, material_fields),
     CYAML_FIELD_MAPPING_PTR("bending", OPTIONAL, ck_SceneFile, bending, bending_fields),
     CYAML_FIELD_SEQUENCE("pins", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, pins, &text, 0, CYAML_UNLIMITED),
     CYAML_FIELD_MAPPING_PTR("noise", OPTIONAL, ck_SceneFile, noise, noise_fields),
