@@ -14,7 +14,8 @@
 //     sphere 0 -1 0 0.3                and of these: centre and radius, m
 //     data
 // and goes on with little-endian numbers: times [frames] float32, s; structural springs [springs][2] int32; their rest
-// lengths [springs] float32, m; triangles [triangles][3] int32; positions [paths][frames][particles][3] float32, m, NaN after a run's last frame.
+// lengths [springs] float32, m; triangles [triangles][3] int32; positions [paths][frames][particles][3] float32, m, NaN
+// after a run's last frame.
 #ifndef CK_REPLAY_FILE_H
 #define CK_REPLAY_FILE_H
 

@@ -21,8 +21,9 @@ typedef struct ck_Equilibrium {
     bool is_minimum;  // the Hessian at position is positive definite
 } ck_Equilibrium;
 
-// Minimises ½k(l − L)² + ½s(angle − rest)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation. The full Hessian,
-// with μ·I added only where it is not positive definite (slack springs make it so); line search on the energy.
+// Minimises ½k(l − L)² + ½s(angle − rest)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation.
+// The full Hessian, with μ·I added only where it is not positive definite (slack springs make it so); line search on
+// the energy.
 //   start  [3*n] m
 // Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders or no pins, or Newton does not get there.
 // Free with ck_equilibrium_free in any case.

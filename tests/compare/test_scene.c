@@ -344,7 +344,7 @@ static void test_readme_scenes(void **state) {
     static const char *const readmes[] = {SCENE_DIRECTORY "/../README.md", SCENE_DIRECTORY "/README.md"};
     for (size_t i = 0; i < sizeof readmes / sizeof *readmes; i++) {
         char *text = read_text(readmes[i]);
-        assert_int_equal(load_blocks(text), 1);
+        assert_true(load_blocks(text) > 0);
         free(text);
     }
 }
