@@ -127,20 +127,24 @@ void ck_bullet_body_read(const ck_BulletBody &body, double length, double *posit
     }
 }
 
-ck_BulletBending::ck_BulletBending(const ck_BulletBody &owner) : body(owner) {
+ck_BulletOuter::ck_BulletOuter(const ck_BulletBody &owner) : body(owner) {
     if (!is_there()) return;
     const size_t count = 3 * static_cast<size_t>(body.model->particle_count);
     at.resize(count);
+    speed.resize(count);
     force.resize(count);
     pull.resize(static_cast<size_t>(body.model->hinge_count));
 }
 
-void ck_BulletBending::update(btVector3 btSoftBody::Node::*position) {
+void ck_BulletOuter::update(btVector3 btSoftBody::Node::*position) {
     for (int i = 0; i < body.model->particle_count; i++)
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; axis++) {
             at[static_cast<size_t>(3 * i + axis)] = (body.soft->m_nodes[node(i)].*position)[axis];
+            speed[static_cast<size_t>(3 * i + axis)] = body.soft->m_nodes[node(i)].m_v[axis];
+        }
     std::fill(force.begin(), force.end(), 0);
     ck_hinges_add_force(body.model, at.data(), force.data());
+    ck_wind_add_force(body.model, at.data(), speed.data(), force.data());
     for (int i = 0; i < body.model->hinge_count; i++)
         pull[static_cast<size_t>(i)] = std::fmax(0, ck_hinge_state(&body.model->hinges[i], at.data()).pull);
 }

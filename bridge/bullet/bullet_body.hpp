@@ -7,6 +7,7 @@
 #include "engine.h"
 #include "hinges.h"
 #include "scaled_model.h"
+#include "wind.h"
 
 #include <BulletSoftBody/btSoftBody.h>
 #include <memory>
@@ -63,16 +64,16 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
 // Positions and velocities of all nodes. position: which of a node's, m_x or m_q.
 ck_BulletNodes ck_bullet_nodes(const ck_BulletBody &body, btVector3 btSoftBody::Node::*position);
 
-// Forces of hinges at the nodes' positions, [nodes], in units of the model. position: which of a node's, m_x or m_q.
-class ck_BulletBending {
+// Forces of hinges and air on the nodes, in units of the model.
+class ck_BulletOuter {
   public:
-    explicit ck_BulletBending(const ck_BulletBody &owner);
+    explicit ck_BulletOuter(const ck_BulletBody &owner);
     bool is_there() const {
-        return body.model->hinge_count > 0;
+        return body.model->hinge_count > 0 || body.model->wind.face_count > 0;
     }
-    // Takes the positions, and what each hinge pulls with.
+    // Takes the nodes' velocities and positions, m_x or m_q, and what each hinge pulls with.
     void update(btVector3 btSoftBody::Node::*position);
-    // Adds scale times the force on each node to add(node, force).
+    // Gives add(node, force) each node's.
     template <class Add> void add_forces(Add add) const {
         for (size_t i = 0; i < body.particle_of_node.size(); i++) {
             const double *f = &force[3 * static_cast<size_t>(body.particle_of_node[i])];
@@ -101,7 +102,7 @@ class ck_BulletBending {
         return body.node_of_particle[static_cast<size_t>(particle)];
     }
     const ck_BulletBody &body;
-    std::vector<double> at, force, pull;
+    std::vector<double> at, speed, force, pull;
 };
 
 // Position and velocity in the scene's particle order and units: [3*n] m, [3*n] m/s. length: of a unit, m.

@@ -180,6 +180,7 @@ ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_Setting
                 {ck_stiffness_names[kind], spring->stiffness, "N/m", "btDeformableLagrangianForce", spring->stiffness,
                  is_implicit ? "k per link; (1 - L/l) clamped at 0 in the differential" : "k per link", CK_EXACT});
     }
+    ck_ledger_add_wind(ledger, model, "btDeformableLagrangianForce", "by face, without a differential", CK_APPROXIMATE);
     ck_ledger_add_bending(ledger, model, "btDeformableLagrangianForce",
                           is_implicit ? "each hinge's force, and the differential of its vector" : "each hinge's force",
                           CK_EXACT);
@@ -310,7 +311,8 @@ ck_Status code_explicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Set
 }
 
 const unsigned terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-                       CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING;
+                       CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING |
+                       CK_TERM_WIND;
 
 const ck_Setting implicit_settings[] = {
     {.name = "substeps",

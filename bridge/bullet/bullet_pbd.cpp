@@ -69,7 +69,7 @@ struct Classic {
     const ck_BulletLoops *loops = ck_bullet_loops();
     bool corrects;    // to Hooke's law: springs, whose share is not the user's own
     uint32_t substep; // since the start
-    std::unique_ptr<ck_BulletBending> bending;
+    std::unique_ptr<ck_BulletOuter> outer;
     uint32_t apart;                         // substeps from one damping force to the next
     std::vector<btScalar> of_one, least;    // of each link of the table: (w_a + w_b)/κ, and κ
     std::vector<int> slot;                  // where its m_c0 is, in numbers from the first link's
@@ -153,6 +153,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
                                    : "1 - (1 + q)^(-1/n), q = k*dt^2*(wa + wb); Link::m_c0 corrected to Hooke",
                                CK_APPROXIMATE});
     }
+    ck_ledger_add_wind(ledger, model, "Node::m_f", "by face, before each step", CK_APPROXIMATE);
     ck_ledger_add_bending(ledger, model, "Node::m_f", "each hinge's force before each step: explicit", CK_APPROXIMATE);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger,
@@ -267,7 +268,7 @@ std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
     state->info.m_gravity = btVector3(model->gravity[0], model->gravity[1], model->gravity[2]);
     state->info.m_sparsesdf.Initialize();
     ck_bullet_body_build(state->body, model, used.substeps, ck_settings_own(&used, OWN_REORDERED, 0) > 0, &state->info);
-    state->bending = std::make_unique<ck_BulletBending>(state->body);
+    state->outer = std::make_unique<ck_BulletOuter>(state->body);
     btSoftBody &soft = *state->body.soft;
     soft.m_cfg.piterations = static_cast<int>(used.iterations);
     soft.m_cfg.kDF = 1;
@@ -317,9 +318,9 @@ void prepare_links(Classic &state) {
 void step_once(Classic &state) {
     btSoftBody &soft = *state.body.soft;
     prepare_links(state);
-    if (state.bending && state.bending->is_there()) {
-        state.bending->update(&btSoftBody::Node::m_x);
-        state.bending->add_forces([&](int node, const btVector3 &force) { soft.addForce(force, node); });
+    if (state.outer && state.outer->is_there()) {
+        state.outer->update(&btSoftBody::Node::m_x);
+        state.outer->add_forces([&](int node, const btVector3 &force) { soft.addForce(force, node); });
     }
     if (state.body.model->terms & CK_TERM_FORCE)
         for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force, node);
@@ -443,7 +444,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .version = ck_bullet_version,
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING,
+             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,

@@ -1,7 +1,7 @@
 #include "bullet_springs.hpp"
 
 ck_BulletSprings::ck_BulletSprings(ck_BulletBody &owner, bool implicit)
-    : body(owner), loops(ck_bullet_loops()), bending(owner), is_implicit(implicit),
+    : body(owner), loops(ck_bullet_loops()), outer(owner), is_implicit(implicit),
       is_damped(owner.model->terms & (CK_TERM_DAMPING | CK_TERM_DRAG)), has_force(owner.model->terms & CK_TERM_FORCE),
       along(owner.links.rest.size()), across(owner.links.rest.size()), own(owner.soft->m_nodes.size()), made_for{0, 0},
       is_stale(true), damping_scale_before(0) {}
@@ -14,9 +14,9 @@ void ck_BulletSprings::add_forces(btScalar elastic_scale, btScalar damping_scale
     const ck_BulletNodes nodes = ck_bullet_nodes(body, &btSoftBody::Node::m_q);
     loops->pull(&links, &nodes, &force[0][0], elastic_scale, damps);
     is_stale = true;
-    if (bending.is_there() && elastic_scale != 0) {
-        bending.update(&btSoftBody::Node::m_q);
-        bending.add_forces([&](int node, const btVector3 &pull) { force[node] += elastic_scale * pull; });
+    if (outer.is_there() && elastic_scale != 0) {
+        outer.update(&btSoftBody::Node::m_q);
+        outer.add_forces([&](int node, const btVector3 &pull) { force[node] += elastic_scale * pull; });
     }
     const btVector3 field(body.model->force[0], body.model->force[1], body.model->force[2]);
     for (int i = 0; i < soft.m_nodes.size() && has_force && elastic_scale != 0; i++)
@@ -59,7 +59,7 @@ void ck_BulletSprings::multiply(btScalar elastic_scale, btScalar damping_scale, 
         made_for[1] = damping_scale;
         is_stale = false;
     }
-    if (bending.is_there() && elastic_scale != 0) bending.multiply(elastic_scale, d, result);
+    if (outer.is_there() && elastic_scale != 0) outer.multiply(elastic_scale, d, result);
     loops->multiply(&links, along.data(), elastic_scale != 0 ? across.data() : nullptr, own.data(), &d[0][0],
                     &result[0][0]);
 }

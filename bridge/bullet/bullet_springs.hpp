@@ -29,7 +29,7 @@ class ck_BulletSprings : public btDeformableLagrangianForce {
 
     ck_BulletBody &body;
     const ck_BulletLoops *loops;
-    ck_BulletBending bending;
+    ck_BulletOuter outer;
     bool is_implicit, is_damped, has_force;
     // what multiply answers with, of each link and node, for the scales it was made for; stale once normals are new
     std::vector<btScalar> along, across, own;

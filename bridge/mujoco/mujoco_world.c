@@ -5,6 +5,7 @@
 #include "scaled_model.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <math.h>
 #include <mujoco/mujoco.h>
@@ -28,8 +29,8 @@ typedef struct MujocoWorld {
     ck_Settings used;
     mjModel *model;
     mjData *data;
-    int *body;       // [particle_count] of each particle; 0, the world, where it is pinned
-    double *bending; // [3][3*particle_count] places, speeds and forces of hinges; NULL without
+    int *body;     // [particle_count] of each particle; 0, the world, where it is pinned
+    double *outer; // [3][3*particle_count] places, speeds and forces of hinges and air; NULL without
 } MujocoWorld;
 
 static const char *version(void) {
@@ -96,6 +97,7 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     if (model->terms & CK_TERM_DRAG)
         ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "joint/damping", model->drag,
                                              "drag*m of each slide joint", CK_EXACT});
+    ck_ledger_add_wind(ledger, model, "xfrc_applied", "by face, before each step", CK_APPROXIMATE);
     ck_ledger_add_bending(ledger, model, "xfrc_applied", "each hinge's force before each step: explicit",
                           CK_APPROXIMATE);
     ck_ledger_add_colliders(
@@ -118,7 +120,7 @@ static void destroy(void *state) {
     unload(world);
     ck_scaled_model_free(&world->scaled);
     free(world->body);
-    free(world->bending);
+    free(world->outer);
     free(world);
 }
 
@@ -181,9 +183,10 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     if (!world) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     world->used = *used;
     world->body = calloc((size_t)model->particle_count, sizeof *world->body);
-    if (model->hinge_count) world->bending = calloc(9 * (size_t)model->particle_count, sizeof(double));
+    const bool has_outer = model->terms & (CK_TERM_BENDING | CK_TERM_WIND);
+    if (has_outer) world->outer = calloc(9 * (size_t)model->particle_count, sizeof(double));
     status = ck_scaled_model_create(&world->scaled, model);
-    if (status || !world->body || !world->bending != !model->hinge_count)
+    if (status || !world->body || !world->outer != !has_outer)
         status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     else
         status = load(world, error);
@@ -209,14 +212,15 @@ static void read_units(const MujocoWorld *world, double *position, double *veloc
     }
 }
 
-// Sets each body's force to the scene's and its hinges'.
-static void bend(MujocoWorld *world) {
+// Sets each body's force to the scene's, its hinges' and the air's.
+static void add_outer(MujocoWorld *world) {
     const ck_Model *model = &world->scaled.model;
     const size_t count = 3 * (size_t)model->particle_count;
-    double *position = world->bending, *force = position + 2 * count;
-    read_units(world, position, position + count, 1);
+    double *position = world->outer, *velocity = position + count, *force = velocity + count;
+    read_units(world, position, velocity, 1);
     for (size_t i = 0; i < count; i++) force[i] = model->force[i % 3];
     ck_hinges_add_force(model, position, force);
+    ck_wind_add_force(model, position, velocity, force);
     for (size_t i = 0; i < count; i++)
         if (world->body[i / 3]) world->data->xfrc_applied[6 * (size_t)world->body[i / 3] + i % 3] = force[i];
 }
@@ -225,7 +229,7 @@ static ck_StepResult step(void *state) {
     MujocoWorld *world = state;
     if (!world->data) return CK_STEP_NO_MEMORY;
     for (uint32_t i = 0; i < world->used.substeps; i++) {
-        if (world->bending) bend(world);
+        if (world->outer) add_outer(world);
         mj_step(world->model, world->data);
         // it would begin anew from the start, and say nothing
         if (has_left(world->data)) return CK_STEP_DIVERGED;
@@ -296,7 +300,7 @@ const ck_Engine ck_mujoco = {
     .version = version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING,
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND,
     .settings = settings,
     .order = 1,
     .create = create,

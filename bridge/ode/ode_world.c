@@ -6,6 +6,7 @@
 #include "shape.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <ode/ode.h>
 #include <stdlib.h>
@@ -22,7 +23,7 @@ typedef struct OdeWorld {
     dWorldID world;
     dJointGroupID joints;
     dBodyID *bodies; // [particle_count]
-    double *bending; // [2][3*particle_count] places and forces of hinges; NULL without
+    double *outer;   // [3][3*particle_count] places, speeds and forces of hinges and air; NULL without
     ck_OdeContacts *contacts;
     double dt; // s, one substep
     uint32_t substeps;
@@ -139,6 +140,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                              "h*drag, threshold 0: first order", CK_APPROXIMATE});
     // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
     translate_springs(model, h, used, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
+    ck_ledger_add_wind(ledger, model, "dBodyAddForce", "by face, before each step", CK_APPROXIMATE);
     ck_ledger_add_bending(ledger, model, "dBodyAddForce", "each hinge's force before each step: explicit",
                           CK_APPROXIMATE);
     translate_contact(model, ledger);
@@ -152,7 +154,7 @@ static void destroy(void *state) {
     if (ode->world) dWorldDestroy(ode->world);
     if (--world_count == 0) dCloseODE();
     free(ode->bodies);
-    free(ode->bending);
+    free(ode->outer);
     free(ode);
 }
 
@@ -208,8 +210,9 @@ static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *u
     const ck_Model *model = ode->model = &ode->scaled.model;
     if (world_count++ == 0) dInitODE2(0);
     ode->bodies = calloc((size_t)model->particle_count, sizeof *ode->bodies);
-    if (model->hinge_count) ode->bending = calloc(6 * (size_t)model->particle_count, sizeof(double));
-    if (ode->bodies && !scaled && !ode->bending == !model->hinge_count) ode->world = dWorldCreate();
+    const bool has_outer = model->terms & (CK_TERM_BENDING | CK_TERM_WIND);
+    if (has_outer) ode->outer = calloc(9 * (size_t)model->particle_count, sizeof(double));
+    if (ode->bodies && !scaled && !ode->outer == !has_outer) ode->world = dWorldCreate();
     if (ode->world) ode->joints = dJointGroupCreate(0);
     ck_Status status = ode->joints ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
@@ -259,12 +262,17 @@ static bool is_safe(const OdeWorld *ode) {
     return true;
 }
 
-static void bend(OdeWorld *ode) {
+// Adds the forces of hinges and air.
+static void add_outer(OdeWorld *ode) {
     const size_t count = 3 * (size_t)ode->model->particle_count;
-    double *position = ode->bending, *force = position + count;
-    for (size_t i = 0; i < count; i++) position[i] = dBodyGetPosition(ode->bodies[i / 3])[i % 3];
-    memset(force, 0, count * sizeof *force);
+    double *position = ode->outer, *velocity = position + count, *force = velocity + count;
+    for (size_t i = 0; i < count; i++) {
+        position[i] = dBodyGetPosition(ode->bodies[i / 3])[i % 3];
+        velocity[i] = dBodyGetLinearVel(ode->bodies[i / 3])[i % 3];
+        force[i] = 0;
+    }
     ck_hinges_add_force(ode->model, position, force);
+    ck_wind_add_force(ode->model, position, velocity, force);
     for (size_t i = 0; i < count; i += 3)
         if (!dBodyIsKinematic(ode->bodies[i / 3]))
             dBodyAddForce(ode->bodies[i / 3], force[i], force[i + 1], force[i + 2]);
@@ -278,7 +286,7 @@ static ck_StepResult step(void *state) {
         if (!is_safe(ode)) return CK_STEP_DIVERGED;
         for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
             if (!dBodyIsKinematic(ode->bodies[j])) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
-        if (ode->bending) bend(ode);
+        if (ode->outer) add_outer(ode);
         if (ode->contacts) ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies);
         // QuickStep shuffles its rows from a seed that is global to the process
         dRandSetSeed(1);
@@ -335,7 +343,7 @@ static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const c
 
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
-     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING)
+     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND)
 
 static const ck_Setting quick_settings[] = {
     {.name = "substeps",

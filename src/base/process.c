@@ -52,6 +52,10 @@ static size_t resident_bytes(pid_t child) {
     return resident * (size_t)sysconf(_SC_PAGESIZE);
 }
 
+size_t ck_process_memory(void) {
+    return resident_bytes(getpid());
+}
+
 // In the environment of all programs that a child starts, with the child's number.
 #define MARK "CLOTHCHECK_RUN"
 

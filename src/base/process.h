@@ -40,6 +40,9 @@ ck_Status ck_child_check(ck_Error *error);
 ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *context), void *context, const ck_Limits *limits,
                        ck_Error *error);
 
+// The resident memory of this process, bytes, which a child starts with.
+size_t ck_process_memory(void);
+
 // One thread a core at most, for work that does not share what it writes: work(context, index) of each index below
 // count, at most jobs at a time and one a core, in no order; jobs 0: one a core. work may start children. The first
 // error of the lowest index is returned; others go on to their end.

@@ -78,3 +78,10 @@ void ck_ledger_add_material(ck_Ledger *ledger, const ck_Model *model) {
                                                 : "kd = nu*Eh/(1 - nu^2): along the threads; isotropic at 1/3 only",
                                  is_grid && !is_isotropic ? CK_APPROXIMATE : CK_EXACT});
 }
+
+void ck_ledger_add_wind(ck_Ledger *ledger, const ck_Model *model, const char *parameter, const char *formula,
+                        ck_Match match) {
+    if (model->wind.face_count)
+        ck_ledger_add(ledger,
+                      (ck_LedgerRow){"air drag", model->wind.drag, "1", parameter, model->wind.drag, formula, match});
+}

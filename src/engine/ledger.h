@@ -49,6 +49,10 @@ void ck_ledger_add_masses(ck_Ledger *ledger, const struct ck_Model *model, ck_Le
 // Rows on the material that a scene's springs are made of: Young's modulus times thickness, and Poisson's ratio.
 void ck_ledger_add_material(ck_Ledger *ledger, const struct ck_Model *model);
 
+// A row on air, where there is any: its drag coefficient.
+void ck_ledger_add_wind(ck_Ledger *ledger, const struct ck_Model *model, const char *parameter, const char *formula,
+                        ck_Match match);
+
 // A row on bending, where the model bends: what the stiffness is of the first hinge, N*m.
 void ck_ledger_add_bending(ck_Ledger *ledger, const struct ck_Model *model, const char *parameter, const char *formula,
                            ck_Match match);

@@ -20,6 +20,8 @@ static void scale_lengths(ck_Model *model, double unit) {
     divide(model->velocity, 3 * model->particle_count, unit);
     divide(model->gravity, 3, unit);
     divide(model->force, 3, unit);
+    divide(model->wind.velocity, 3, unit);
+    divide(&model->wind.density, 1, 1 / (unit * unit * unit));
     divide(&model->size, 1, unit);
     divide(&model->spacing, 1, unit);
     for (int i = 0; i < model->spring_count; i++) divide(&model->springs[i].rest, 1, unit);
@@ -34,6 +36,7 @@ static void scale_lengths(ck_Model *model, double unit) {
 }
 
 static void scale_masses(ck_Model *model, double unit) {
+    divide(&model->wind.density, 1, unit);
     divide(model->mass, model->particle_count, unit);
     divide(model->force, 3, unit);
     for (int i = 0; i < model->spring_count; i++) {

@@ -82,8 +82,12 @@ static void put_network(Writer *writer, const ck_Model *model) {
     for (int i = 0; i < model->particle_count; i++) put(writer, i ? ",\n  " : "\n  ", node_of(model, i), "");
     fprintf(writer->out, "],\n \"springs\": [");
     for (int i = 0; i < model->spring_count; i++) put(writer, i ? ",\n  " : "\n  ", spring_of(&model->springs[i]), "");
-    for (int i = 0; i < model->triangle_count; i++)
-        put(writer, i ? ",\n  " : "],\n \"triangles\": [\n  ", triangle_of(model->triangles[i]), "");
+    // air needs the faces of a cloth, too
+    const int(*faces)[3] =
+        model->triangle_count ? (const int(*)[3])model->triangles : (const int(*)[3])model->wind.faces;
+    const int face_count = model->triangle_count ? model->triangle_count : model->wind.face_count;
+    for (int i = 0; i < face_count; i++)
+        put(writer, i ? ",\n  " : "],\n \"triangles\": [\n  ", triangle_of(faces[i]), "");
     for (int i = 0; i < model->hinge_count; i++)
         put(writer, i ? ",\n  " : "],\n \"hinges\": [\n  ", hinge_of(&model->hinges[i]), "");
     fprintf(writer->out, "]}");
@@ -125,6 +129,11 @@ static void put_fields(Writer *writer, const ck_Model *model) {
     for (int i = 0; i < model->collider_count; i++)
         put(writer, i ? ",\n  " : ",\n\"colliders\": [\n  ", collider_of(&model->colliders[i]),
             i + 1 == model->collider_count ? "]" : "");
+    if (model->terms & CK_TERM_WIND)
+        put(writer, ",\n\"wind\": ",
+            json_pack("{s:o, s:f, s:f, s:f}", "velocity", vector_of(model->wind.velocity), "density",
+                      model->wind.density, "drag", model->wind.drag, "lift", model->wind.lift),
+            "");
     put_releases(writer, model);
     put(writer, ",\n\"time\": ", json_pack("{s:f, s:f}", "duration", model->duration, "step", model->step), "");
     if (truth_goes_along(model)) put(writer, ",\n\"truth\": ", json_string(model->truth), "");
@@ -191,7 +200,7 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
         fprintf(out, "%d %d %.17g %.17g %.17g %s\n", spring->a, spring->b, spring->rest, spring->stiffness,
                 spring->damping, ck_export_kinds[spring->kind]);
     }
-    // only who said that it models bending is told of it
+    // only who said that it models bending and wind is told of them
     if (model->hinge_count) fprintf(out, "hinges %d\n", model->hinge_count);
     for (int i = 0; i < model->hinge_count; i++) {
         const ck_Hinge *hinge = &model->hinges[i];
@@ -199,6 +208,15 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
                                   hinge->weights[3], hinge->stiffness,  hinge->rest};
         fprintf(out, "%d %d %d %d", hinge->particles[0], hinge->particles[1], hinge->particles[2], hinge->particles[3]);
         line(out, "", numbers, 6);
+    }
+    if (model->wind.face_count) {
+        const ck_Wind *wind = &model->wind;
+        const double numbers[] = {wind->velocity[0], wind->velocity[1], wind->velocity[2],
+                                  wind->density,     wind->drag,        wind->lift};
+        line(out, "wind", numbers, 6);
+        fprintf(out, "faces %d\n", wind->face_count);
+        for (int i = 0; i < wind->face_count; i++)
+            fprintf(out, "%d %d %d\n", wind->faces[i][0], wind->faces[i][1], wind->faces[i][2]);
     }
     fprintf(out, "colliders %d\n", model->collider_count);
     for (int i = 0; i < model->collider_count; i++) {

@@ -14,10 +14,11 @@
 #include <unistd.h>
 
 // A file's size in MiB gives what reading it may take: a whole one takes some 0.1 s and ten times its size; one that
-// claims to be larger than it is would take all there is.
+// claims to be larger than it is would take all there is. A child starts with what its parent has.
 static ck_Limits limits_for(off_t size) {
     const double mebibytes = (double)size / (1 << 20);
-    return (ck_Limits){.seconds = 2 + 0.5 * mebibytes, .memory_bytes = ((size_t)512 << 20) + 24 * (size_t)size};
+    return (ck_Limits){.seconds = 2 + 0.5 * mebibytes,
+                       .memory_bytes = ck_process_memory() + ((size_t)512 << 20) + 24 * (size_t)size};
 }
 
 // A child's work: its mesh goes to file, and its error to memory that both see.

@@ -2,6 +2,7 @@
 #include "springs.h"
 
 #include "vector.h"
+#include "wind.h"
 
 #include <string.h>
 
@@ -37,6 +38,7 @@ double ck_energy_scale(const ck_Model *model, const ck_Trajectory *trajectory) {
 }
 
 double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *trajectory) {
+    if (ck_wind_blows(model)) return 0; // it gives what it likes
     bool is_snapping = (model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model);
     int first = is_snapping ? (trajectory->frame_count + 9) / 10 : 1;
     ck_Energy start = ck_energy_at(model, trajectory, 0);
@@ -79,12 +81,14 @@ static bool starts_with_a_jerk(const ck_Model *model) {
 
 static bool loses_otherwise(const ck_Model *model) {
     bool loses = (model->terms & CK_TERM_RIGID) && (!ck_springs_start_at_rest(model) || starts_with_a_jerk(model));
+    loses |= model->wind.face_count > 0;
     for (int i = 0; i < model->collider_count; i++)
         loses |= model->colliders[i].restitution < 1 || model->colliders[i].friction > 0;
     return loses;
 }
 
 double ck_energy_drift(const ck_Model *model, const ck_Trajectory *trajectory) {
+    if (ck_wind_blows(model)) return NAN;
     ck_Energy start = ck_energy_at(model, trajectory, 0);
     double total = ck_energy_total(&start), taken = 0, taken_coarsely = 0, unsure = 0, drift = 0;
     double before = damping_power(model, trajectory, 0), even = before;

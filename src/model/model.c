@@ -12,7 +12,7 @@
 
 const char *const ck_term_names[CK_TERM_COUNT] = {
     "springs",        "rigid bars", "spring damping", "gravity", "force",   "drag",
-    "start velocity", "plane",      "sphere",         "release", "bending",
+    "start velocity", "plane",      "sphere",         "release", "bending", "wind",
 };
 
 const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness",
@@ -244,6 +244,7 @@ static unsigned terms_in_use(const ck_Model *model) {
         terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
     if (model->release_count) terms |= CK_TERM_RELEASE;
     if (model->hinge_count) terms |= CK_TERM_BENDING;
+    if (model->wind.face_count) terms |= CK_TERM_WIND;
     return terms;
 }
 
@@ -256,6 +257,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (!status) status = check_springs(model, scene, error);
     if (!status) status = ck_model_set_material(model, scene, error);
     if (!status) status = ck_model_build_hinges(model, scene, error);
+    if (!status) status = ck_model_set_wind(model, scene, error);
     if (!status) status = set_pins(model, scene, error);
     if (!status) status = set_releases(model, scene, error);
     if (!status) status = set_colliders(model, scene, error);
@@ -280,6 +282,7 @@ void ck_model_free(ck_Model *model) {
     }
     free(model->groups);
     free(model->hinges);
+    free(model->wind.faces);
     free(model->triangles);
     free(model->releases);
     free(model->measure);

@@ -26,7 +26,8 @@ typedef enum ck_Term {
     CK_TERM_SPHERE = 1 << 8,
     CK_TERM_RELEASE = 1 << 9,  // pins let go while it runs
     CK_TERM_BENDING = 1 << 10, // hinges
-    CK_TERM_COUNT = 11,
+    CK_TERM_WIND = 1 << 11,
+    CK_TERM_COUNT = 12,
 } ck_Term;
 
 // The name of the term in bit order, as a scene's author knows it.
@@ -50,6 +51,14 @@ typedef struct ck_Hinge {
     double stiffness;  // N·m
     double rest;       // rad
 } ck_Hinge;
+
+// Air: see wind.h.
+typedef struct ck_Wind {
+    double velocity[3], density; // m/s, kg/m³: half of the air's where every square has faces both ways
+    double drag, lift;           // coefficients, 1
+    int (*faces)[3];             // [face_count] particles
+    int face_count;              // 0: no air
+} ck_Wind;
 
 typedef enum ck_ColliderShape { CK_PLANE, CK_SPHERE } ck_ColliderShape;
 
@@ -95,6 +104,7 @@ typedef struct ck_Model {
     double bending;      // N·m of a sheet, N·m² of a rope, as the scene gives it; 0: none, or hinges of their own
     int (*triangles)[3]; // [triangle_count] particles of a mesh's faces, else none
     int triangle_count;
+    ck_Wind wind;
     ck_Group *groups; // of a mesh
     int group_count;
     double gravity[3], force[3]; // m/s², N on each particle

@@ -2,6 +2,7 @@
 
 #include "hinges.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <string.h>
 
@@ -69,6 +70,7 @@ void ck_springs_accelerate(const ck_Model *model, const double *position, const 
         ck_add_scaled(acceleration + 3 * spring->b, -pull, d);
     }
     if (model->hinge_count) ck_hinges_add_force(model, position, acceleration);
+    if (model->wind.face_count) ck_wind_add_force(model, position, velocity, acceleration);
     for (int i = 0; i < model->particle_count; i++) {
         double field[3], inverse = 1 / model->mass[i];
         ck_model_field(model, i, field);

@@ -27,9 +27,9 @@ double ck_springs_damping_power(const ck_Model *model, const double *position, c
 // True where every spring starts at its rest length, to 1e-12 of it.
 bool ck_springs_start_at_rest(const ck_Model *model);
 
-// Acceleration of every particle, m/s², 0 where pinned: springs with axial damping, hinges, field, drag.
+// Acceleration of every particle, m/s², 0 where pinned: springs with axial damping, hinges, wind, field, drag.
 //   position, velocity  [3*n] in;  acceleration  [3*n] out
-// Cost: one pass over springs, hinges and particles each.
+// Cost: one pass over springs, hinges, faces in wind and particles each.
 void ck_springs_accelerate(const ck_Model *model, const double *position, const double *velocity, double *acceleration);
 
 // The mechanical energy of a body along its path, and the balance of it: what no engine may gain, nor lose beyond the

@@ -3,6 +3,7 @@
 #include "hinges.h"
 #include "shape.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -156,7 +157,8 @@ double ck_stability_bending_time(const ck_Model *model) {
 }
 
 double ck_stability_drag_time(const ck_Model *model, double share) {
-    return model->drag > 0 ? share / model->drag : INFINITY;
+    const double rate = fmax(model->drag, model->wind.face_count ? ck_wind_rate(model) : 0);
+    return rate > 0 ? share / rate : INFINITY;
 }
 
 uint32_t ck_stability_substeps(const ck_Model *model, double limit) {

@@ -43,6 +43,7 @@ static void accelerate(const ck_Native *native, double *acceleration) {
         ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
     }
     if (model->hinge_count) bend(native, acceleration);
+    if (model->wind.face_count) ck_native_blow(native, velocity, acceleration);
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
@@ -107,6 +108,7 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     ck_settings_take_own(used, wanted);
     ck_own_ledger(ledger, model, used, "force -drag*m*v, v predicted", CK_EXACT);
     ck_own_ledger_springs(ledger, model, "stiffness", "k", CK_EXACT);
+    ck_ledger_add_wind(ledger, model, "acceleration", "by face, with v predicted", CK_EXACT);
     ck_ledger_add_bending(ledger, model, "stiffness", "s at rows and edges, 2*s at twisted squares", CK_EXACT);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "damping",
@@ -218,7 +220,7 @@ const ck_Engine ck_native_verlet = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_VELOCITY_VERLET,
-    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING,
+    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING | CK_TERM_WIND,
     .settings = settings,
     .order = 2,
     .create = create,

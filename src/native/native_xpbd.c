@@ -71,10 +71,16 @@ static void substep(ck_Native *native) {
     ck_native_start_substep(native);
     memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
     if (native->bending) memset(native->bending, 0, 3 * sizeof(double) * (size_t)model->hinge_count);
+    if (model->wind.face_count) {
+        memset(native->acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+        ck_native_blow(native, native->velocity, native->acceleration);
+    }
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
         ck_model_field(model, i, field);
+        // without air these stay 0
+        ck_add_scaled(field, 1, native->acceleration + 3 * i);
         if (native->contact) {
             double next[3];
             memcpy(next, native->velocity + 3 * i, sizeof next);
@@ -148,6 +154,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                                         : "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations",
                                      CK_APPROXIMATE});
     }
+    ck_ledger_add_wind(ledger, model, "acceleration", "by face, before the sweeps", CK_APPROXIMATE);
     ck_ledger_add_bending(ledger, model, "compliance", "1/(s*dt^2) of each hinge's vector", CK_APPROXIMATE);
     if (model->terms & CK_TERM_DAMPING)
         ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
@@ -258,7 +265,7 @@ const ck_Engine ck_native_xpbd = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_XPBD,
-    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING | CK_TERM_WIND,
     .settings = settings,
     .order = 1,
     .rest_order = 2,

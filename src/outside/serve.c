@@ -125,6 +125,25 @@ static void read_hinges(Server *server) {
     }
 }
 
+static void read_wind(Server *server) {
+    ck_Wind *wind = &server->model.wind;
+    vector(server, wind->velocity);
+    wind->density = number(server);
+    wind->drag = number(server);
+    wind->lift = number(server);
+}
+
+static void read_faces(Server *server) {
+    ck_Model *model = &server->model;
+    model->wind.face_count = count(server);
+    model->wind.faces = allocate((size_t)model->wind.face_count, sizeof *model->wind.faces);
+    for (int i = 0; i < 3 * model->wind.face_count; i++) {
+        const int particle = (int)number(server);
+        if (particle < 0 || particle >= model->particle_count) fail("a face of no particle");
+        model->wind.faces[i / 3][i % 3] = particle;
+    }
+}
+
 static void read_setting(Server *server) {
     if (!next_word(server)) fail("the scene ends within a setting");
     const ck_Setting *setting = ck_setting_find(server->engine->settings, server->word);
@@ -142,6 +161,7 @@ static unsigned terms_of(const ck_Model *model) {
         if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
     }
     if (model->hinge_count) terms |= CK_TERM_BENDING;
+    if (model->wind.face_count) terms |= CK_TERM_WIND;
     if (memcmp(model->gravity, none, sizeof none)) terms |= CK_TERM_GRAVITY;
     if (memcmp(model->force, none, sizeof none)) terms |= CK_TERM_FORCE;
     if (model->drag > 0) terms |= CK_TERM_DRAG;
@@ -176,6 +196,10 @@ static void read_scene(Server *server) {
             read_particles(server);
         else if (!strcmp(word, "springs"))
             read_springs(server);
+        else if (!strcmp(word, "wind"))
+            read_wind(server);
+        else if (!strcmp(word, "faces"))
+            read_faces(server);
         else if (!strcmp(word, "hinges"))
             read_hinges(server);
         else if (!strcmp(word, "colliders"))

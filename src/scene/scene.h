@@ -86,6 +86,11 @@ typedef struct ck_SceneMaterial {
     double retardation; // s: a spring's damping over its stiffness
 } ck_SceneMaterial;
 
+typedef struct ck_SceneWind {
+    double *velocity;           // [3] m/s; NULL: still air
+    double density, drag, lift; // kg/m³, 0: 1.225, air at sea level; coefficients, 1
+} ck_SceneWind;
+
 typedef struct ck_SceneBending {
     double stiffness; // N·m of a cloth or mesh, N·m² of a rope; 0: the material's
     char *rest;       // flat or start; NULL: flat
@@ -143,6 +148,7 @@ typedef struct ck_SceneFile {
     ck_SceneSprings *springs;
     ck_SceneBending *bending;
     ck_SceneMaterial *material;
+    ck_SceneWind *wind;
     char **pins;
     uint32_t pins_count;
     ck_SceneNoise *noise;

@@ -92,6 +92,14 @@ static void drop_bending(Reduced *reduced, int collider) {
     reduced->network.hinges_count = 0;
 }
 
+static bool has_wind(const ck_SceneFile *file) {
+    return file->wind != NULL;
+}
+static void drop_wind(Reduced *reduced, int collider) {
+    (void)collider;
+    reduced->file.wind = NULL;
+}
+
 static bool has_damping(const ck_SceneFile *file) {
     bool has = file->springs && file->springs->damping > 0;
     for (uint32_t i = 0; file->network && i < file->network->springs_count; i++)
@@ -193,6 +201,7 @@ static const struct {
     {"shear", has_shear, drop_shear, false, false, NULL},
     {"bend", has_bend, drop_bend, false, false, NULL},
     {"bending", has_bending, drop_bending, false, false, NULL},
+    {"wind", has_wind, drop_wind, false, false, NULL},
     {"spring damping", has_damping, drop_damping, false, false, NULL},
     {"drag", has_drag, drop_drag, false, false, NULL},
     {"friction", has_friction, drop_friction, false, false, NULL},

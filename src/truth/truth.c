@@ -40,6 +40,8 @@ static const ck_TruthForm forms[] = {
     {"free_fall", CLOSED, "x = x_0 + v_0*t + a*t^2/2", false, .at = ck_truth_free_fall},
     {"terminal_speed", CLOSED, "v = v_t + (v_0 - v_t)*exp(-drag*t), v_t = a/drag", false,
      .at = ck_truth_terminal_speed},
+    {"air_fall", CLOSED, "v = v_t*tanh(g*t/v_t), v_t = sqrt(2*m*g/(rho*C_d*A)): a level sheet let go in still air",
+     false, .at = ck_truth_air_fall},
     {"oscillator", CLOSED, "damped oscillator: u'' = -(k/m)*u - (c/m)*u'", false, .at = ck_truth_oscillator},
     {"longitudinal_modes", CLOSED, "fixed-free chain: w_j = 2*sqrt(k/m)*sin((2j-1)*pi/(2*(2N+1)))", false,
      .at = ck_truth_longitudinal_modes},

@@ -263,7 +263,7 @@ static void test_every_key(void **state) {
         "name: all\nabout: every key there is\n"
         "cloth: {rows: 3, columns: 4, spacing: 0.5, mass: 12, origin: [1, 2, 3], across: [0, 0, 2], down: [0, -1, 0]}\n"
         "springs: {stiffness: 10, damping: 0.1, shear: 5, bend: 1, rigid: false}\n"
-        "bending: {stiffness: 0.2, rest: flat}\n"
+        "bending: {stiffness: 0.2, rest: flat}\nwind: {velocity: [1, 0, 0], density: 1.2, drag: 1, lift: 0.5}\n"
         "pins: [top_edge, 2:3, 5]\nnoise: {amplitude: 0.01, seed: 7}\ngravity: [0, -10, 0]\ndrag: 2\nforce: [1, 0, "
         "0]\nvelocity: [0, 0, 1]\n"
         "colliders: [{plane: {point: [0, -1, 0], normal: [0, 2, 0], restitution: 0.6, friction: 0.3}},\n"

@@ -32,6 +32,9 @@ ck_Status ck_model_set_material(ck_Model *model, const ck_Scene *scene, ck_Error
 // Shares the area of each face among its corners: into mass, times density, kg/m². Returns the sum, m².
 double ck_body_share_area(ck_Model *model, double density);
 
+// The air of a scene, and the faces that it acts on. Errors: CK_BAD_INPUT where there are none, CK_NO_MEMORY.
+ck_Status ck_model_set_wind(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
 // Room for so many particles and springs. Errors: CK_BAD_INPUT where there are too many, CK_NO_MEMORY.
 ck_Status ck_body_allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
                            ck_Error *error);

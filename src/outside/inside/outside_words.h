@@ -4,7 +4,7 @@
 
 #include "model.h"
 
-static const char *const ck_term_words[CK_TERM_COUNT] = {"springs",  "rigid", "damping", "gravity", "force",  "drag",
-                                                         "velocity", "plane", "sphere",  "release", "bending"};
+static const char *const ck_term_words[CK_TERM_COUNT] = {"springs",  "rigid", "damping", "gravity", "force",   "drag",
+                                                         "velocity", "plane", "sphere",  "release", "bending", "wind"};
 
 #endif

@@ -37,6 +37,9 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"material.bending", CK_RANGE_NOT_NEGATIVE},
     {"material.density", CK_RANGE_POSITIVE},
     {"material.retardation", CK_RANGE_NOT_NEGATIVE},
+    {"wind.density", CK_RANGE_POSITIVE},
+    {"wind.drag", CK_RANGE_NOT_NEGATIVE},
+    {"wind.lift", CK_RANGE_NOT_NEGATIVE},
     {"noise.amplitude", CK_RANGE_NOT_NEGATIVE},
     {"drag", CK_RANGE_NOT_NEGATIVE},
     {"colliders[].plane.restitution", CK_RANGE_UNIT},
@@ -165,6 +168,14 @@ static const cyaml_schema_field_t material_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t wind_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneWind, velocity, &number, 3),
+    CYAML_FIELD_FLOAT("density", OPTIONAL, ck_SceneWind, density),
+    CYAML_FIELD_FLOAT("drag", REQUIRED, ck_SceneWind, drag),
+    CYAML_FIELD_FLOAT("lift", OPTIONAL, ck_SceneWind, lift),
+    CYAML_FIELD_END,
+};
+
 static const cyaml_schema_field_t noise_fields[] = {
     CYAML_FIELD_FLOAT("amplitude", REQUIRED, ck_SceneNoise, amplitude),
     CYAML_FIELD_UINT("seed", REQUIRED, ck_SceneNoise, seed),
@@ -231,6 +242,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING_PTR("mesh", OPTIONAL, ck_SceneFile, mesh, mesh_fields),
     CYAML_FIELD_MAPPING_PTR("springs", OPTIONAL, ck_SceneFile, springs, springs_fields),
     CYAML_FIELD_MAPPING_PTR("material", OPTIONAL, ck_SceneFile, material, material_fields),
+    CYAML_FIELD_MAPPING_PTR("wind", OPTIONAL, ck_SceneFile, wind, wind_fields),
     CYAML_FIELD_MAPPING_PTR("bending", OPTIONAL, ck_SceneFile, bending, bending_fields),
     CYAML_FIELD_SEQUENCE("pins", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, pins, &text, 0, CYAML_UNLIMITED),
     CYAML_FIELD_MAPPING_PTR("noise", OPTIONAL, ck_SceneFile, noise, noise_fields),

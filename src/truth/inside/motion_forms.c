@@ -5,7 +5,9 @@
 #include "springs.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "wind.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
@@ -347,6 +349,55 @@ ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *po
         ck_add_scaled(position + 3 * i, (1 - fade) / model->drag, surplus);
         ck_add_scaled(velocity + 3 * i, 1, terminal);
         ck_add_scaled(velocity + 3 * i, fade, surplus);
+    }
+    return CK_OK;
+}
+
+// The area of the faces, m², and by how much a particle's share of it is off its share of the mass; NaN where a face
+// does not lie across the direction.
+static double area_across(const ck_Model *model, const double *direction, double *off) {
+    const ck_Wind *wind = &model->wind;
+    double *shares = calloc((size_t)model->particle_count, sizeof *shares), area = 0, mass = 0;
+    if (!shares) return NAN;
+    for (int i = 0; i < wind->face_count; i++) {
+        const int *corners = wind->faces[i];
+        double one[3], other[3], normal[3];
+        ck_subtract(one, model->position + 3 * corners[1], model->position + 3 * corners[0]);
+        ck_subtract(other, model->position + 3 * corners[2], model->position + 3 * corners[0]);
+        ck_cross(normal, one, other);
+        const double face = 0.5 * ck_length(normal);
+        area += fabs(0.5 * fabs(ck_dot(normal, direction)) - face) > 1e-9 * face ? NAN : face;
+        for (int k = 0; k < 3; k++) shares[corners[k]] += face / 3;
+    }
+    for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
+    *off = 0;
+    for (int i = 0; i < model->particle_count; i++)
+        *off = fmax(*off, fabs(shares[i] / area - model->mass[i] / mass) * model->particle_count);
+    free(shares);
+    return area;
+}
+
+ck_Status ck_truth_air_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
+    double field[3], direction[3], off = INFINITY, mass = 0;
+    ck_model_mean_field(model, field);
+    const double g = ck_length(field);
+    bool fits = g > 0 && model->wind.face_count && model->wind.drag > 0 && !ck_wind_blows(model) && !model->pin_count &&
+                !(model->terms & (CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_FORCE)) && ck_springs_start_at_rest(model);
+    for (int axis = 0; axis < 3; axis++) direction[axis] = g > 0 ? field[axis] / g : 0;
+    const double area = fits ? area_across(model, direction, &off) : NAN;
+    ck_Status status =
+        ck_truth_need(area > 0 && off < 1e-9, model, error,
+                      "a flat sheet across gravity that starts at rest in still air, without pins, noise "
+                      "and other drag, whose masses are by area, as those of a material");
+    if (status) return status;
+    for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
+    const double terminal = sqrt(2 * mass * g / (model->wind.density * model->wind.drag * area)),
+                 fallen = terminal * terminal / g * log(cosh(g * time / terminal)),
+                 speed = terminal * tanh(g * time / terminal);
+    start_from(model, position, velocity);
+    for (int i = 0; i < model->particle_count; i++) {
+        ck_add_scaled(position + 3 * i, fallen, direction);
+        ck_add_scaled(velocity + 3 * i, speed, direction);
     }
     return CK_OK;
 }

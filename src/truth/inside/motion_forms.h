@@ -26,6 +26,9 @@ ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position
 // Turns the bar by so much towards its rest.
 void ck_truth_nudge_pendulum(ck_Model *model, double share);
 
+// A flat sheet across the field, let go at rest in still air: masses by the area around each particle.
+ck_Status ck_truth_air_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
+
 // Any body without pins and colliders whose springs start at rest, falling with drag.
 ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *position, double *velocity,
                                   ck_Error *error);

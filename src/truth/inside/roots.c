@@ -5,6 +5,7 @@
 #include "rest_forms.h"
 #include "runge_kutta.h"
 #include "time_scale.h"
+#include "wind.h"
 
 #include <string.h>
 
@@ -17,6 +18,8 @@ ck_Status ck_truth_equilibrium_check(const ck_Model *model, ck_Error *error) {
     ck_Status status = ck_truth_need(!(model->terms & CK_TERM_RIGID), model, error,
                                      "springs that stretch: rigid bars have no energy to be least; for them there are "
                                      "vertical_chain, catenary and rest");
+    if (!status)
+        status = ck_truth_need(!ck_wind_blows(model), model, error, "still air: wind has no energy to be least");
     if (!status)
         status = ck_truth_need(model->pin_count > 0, model, error, "pins: without them the body falls for ever");
     return status ? status

@@ -36,6 +36,13 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         value = ck_hash(value, hinge->weights, sizeof hinge->weights);
         value = ck_hash(value, numbers, sizeof numbers);
     }
+    if (model->wind.face_count) {
+        const ck_Wind *wind = &model->wind;
+        const double numbers[] = {wind->velocity[0], wind->velocity[1], wind->velocity[2],
+                                  wind->density,     wind->drag,        wind->lift};
+        value = ck_hash(value, numbers, sizeof numbers);
+        value = ck_hash(value, wind->faces, (size_t)wind->face_count * sizeof *wind->faces);
+    }
     for (int i = 0; i < model->release_count; i++) {
         const ck_Release *release = &model->releases[i];
         value = ck_hash(value, &release->frame, sizeof release->frame);
