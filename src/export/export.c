@@ -45,8 +45,11 @@ static json_t *spring_of(const ck_Spring *spring) {
     if (isinf(spring->stiffness))
         return json_pack("{s:[i, i], s:f, s:b, s:s}", "ends", spring->a, spring->b, "rest", spring->rest, "rigid", 1,
                          "kind", ck_export_kinds[spring->kind]);
-    return json_pack("{s:[i, i], s:f, s:f, s:f, s:s}", "ends", spring->a, spring->b, "rest", spring->rest, "stiffness",
-                     spring->stiffness, "damping", spring->damping, "kind", ck_export_kinds[spring->kind]);
+    json_t *soft =
+        json_pack("{s:[i, i], s:f, s:f, s:f, s:s}", "ends", spring->a, spring->b, "rest", spring->rest, "stiffness",
+                  spring->stiffness, "damping", spring->damping, "kind", ck_export_kinds[spring->kind]);
+    if (spring->pulls_only && soft && json_object_set_new(soft, "pull_only", json_true())) return NULL;
+    return soft;
 }
 
 static json_t *triangle_of(const int *corners) {

@@ -27,6 +27,7 @@ bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs) {
     springs->damping = model->springs[0].damping;
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
+        if (spring->pulls_only) return false;
         if (!joins_neighbours(spring, model->columns) || spring->damping != springs->damping) return false;
         if (!counts[spring->kind]++) {
             springs->stiffness[spring->kind] = spring->stiffness;

@@ -11,8 +11,19 @@
 #include <string.h>
 
 const char *const ck_term_names[CK_TERM_COUNT] = {
-    "springs",        "rigid bars", "spring damping", "gravity", "force",   "drag",
-    "start velocity", "plane",      "sphere",         "release", "bending", "wind",
+    "springs",
+    "rigid bars",
+    "spring damping",
+    "gravity",
+    "force",
+    "drag",
+    "start velocity",
+    "plane",
+    "sphere",
+    "release",
+    "bending",
+    "wind",
+    "springs that only pull",
 };
 
 const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness",
@@ -162,6 +173,8 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
          "only a cloth of squares has diagonals; add bars to a network, or leave it out"},
         {"springs.bend", springs->bend, model->body == CK_NETWORK || model->body == CK_MESH,
          "only a cloth and a rope have second neighbours; leave it out"},
+        {"springs.pull_only", springs->pull_only, springs->rigid, "rigid bars push, too; leave one of the two out"},
+        {"springs.pull_only", springs->pull_only, is_none, "there is no spring; give a stiffness, or leave it out"},
         {"springs.damping", springs->damping, is_none, "there is no spring; give a stiffness, or leave it out"},
         {"springs.prestretch", springs->prestretch, is_none, "there is no spring; give a stiffness, or leave it out"},
         {"springs.stiffness", springs->stiffness, lacks_bars,
@@ -234,6 +247,7 @@ static unsigned terms_in_use(const ck_Model *model) {
     for (int i = 0; i < model->spring_count; i++) {
         if (isinf(model->springs[i].stiffness)) terms |= CK_TERM_RIGID;
         if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
+        if (model->springs[i].pulls_only) terms |= CK_TERM_PULL_ONLY;
     }
     if (ck_length(model->gravity) > 0) terms |= CK_TERM_GRAVITY;
     if (ck_length(model->force) > 0) terms |= CK_TERM_FORCE;

@@ -27,7 +27,8 @@ typedef enum ck_Term {
     CK_TERM_RELEASE = 1 << 9,  // pins let go while it runs
     CK_TERM_BENDING = 1 << 10, // hinges
     CK_TERM_WIND = 1 << 11,
-    CK_TERM_COUNT = 12,
+    CK_TERM_PULL_ONLY = 1 << 12, // springs that hang slack where they are shorter than at rest
+    CK_TERM_COUNT = 13,
 } ck_Term;
 
 // The name of the term in bit order, as a scene's author knows it.
@@ -42,6 +43,7 @@ typedef struct ck_Spring {
     double stiffness; // N/m; INFINITY for a rigid bar
     double damping;   // N·s/m along the spring
     ck_SpringKind kind;
+    bool pulls_only; // it does not push, and damps only while it pulls
 } ck_Spring;
 
 // What resists being bent: see hinges.h.

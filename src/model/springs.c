@@ -31,7 +31,8 @@ double ck_springs_energy(const ck_Model *model, const double *position) {
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         double stretch = spring->rest * ck_spring_strain(spring, position);
-        if (isfinite(spring->stiffness)) energy += 0.5 * spring->stiffness * stretch * stretch;
+        if (isfinite(spring->stiffness) && !(spring->pulls_only && stretch < 0))
+            energy += 0.5 * spring->stiffness * stretch * stretch;
     }
     return energy;
 }
@@ -44,6 +45,7 @@ double ck_springs_damping_power(const ck_Model *model, const double *position, c
         ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
         ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
         double squared = ck_dot(d, d), along = ck_dot(d, v);
+        if (spring->pulls_only && squared < spring->rest * spring->rest) continue;
         if (squared > 0) power += spring->damping * along * along / squared;
     }
     return power;
@@ -57,6 +59,7 @@ bool ck_springs_start_at_rest(const ck_Model *model) {
 
 void ck_springs_accelerate(const ck_Model *model, const double *position, const double *velocity,
                            double *acceleration) {
+    const bool hangs = model->terms & CK_TERM_PULL_ONLY;
     memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
@@ -64,6 +67,7 @@ void ck_springs_accelerate(const ck_Model *model, const double *position, const 
         ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
         ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
         double length = ck_length(d), inverse = 1 / length;
+        if (hangs && spring->pulls_only && length < spring->rest) continue;
         double pull =
             (spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) * inverse) * inverse;
         ck_add_scaled(acceleration + 3 * spring->a, pull, d);

@@ -30,6 +30,7 @@ static void bend(const ck_Native *native, double *acceleration) {
 static void accelerate(const ck_Native *native, double *acceleration) {
     const ck_Model *model = native->model;
     const double *position = native->position, *velocity = native->other_velocity;
+    const bool hangs = model->terms & CK_TERM_PULL_ONLY;
     memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
@@ -38,6 +39,7 @@ static void accelerate(const ck_Native *native, double *acceleration) {
         ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
         double length = ck_length(d);
         if (!(length > 0)) continue; // coincident particles have no direction to push in
+        if (hangs && spring->pulls_only && length < spring->rest) continue;
         double tension = spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) / length;
         ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
         ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
@@ -220,7 +222,7 @@ const ck_Engine ck_native_verlet = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_VELOCITY_VERLET,
-    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING | CK_TERM_WIND,
+    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY,
     .settings = settings,
     .order = 2,
     .create = create,

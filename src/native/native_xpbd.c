@@ -22,12 +22,15 @@ static void sweep(ck_Native *native) {
         ck_subtract(d, b, a);
         double length = ck_length(d);
         if (!(length > 0)) continue;
+        if (spring->pulls_only && length < spring->rest && !(native->multiplier[i] < 0)) continue;
         double compliance = native->compliance[i], damping = native->gamma[i];
         for (int axis = 0; axis < 3; axis++)
             moved[axis] = d[axis] - (native->start[3 * spring->b + axis] - native->start[3 * spring->a + axis]);
         double residual =
             length - spring->rest + compliance * native->multiplier[i] + damping * ck_dot(moved, d) / length;
         double change = -native->used.relaxation * residual / ((1 + damping) * (weight_a + weight_b) + compliance);
+        // a pull may be taken back, but no more
+        if (spring->pulls_only) change = fmin(change, -native->multiplier[i]);
         native->multiplier[i] += change;
         ck_add_scaled(a, -weight_a * change / length, d);
         ck_add_scaled(b, weight_b * change / length, d);
@@ -265,7 +268,7 @@ const ck_Engine ck_native_xpbd = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_XPBD,
-    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING | CK_TERM_WIND,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY,
     .settings = settings,
     .order = 1,
     .rest_order = 2,

@@ -23,6 +23,7 @@ typedef struct ck_SceneCloth {
 typedef struct ck_SceneRope {
     uint32_t particles;
     double spacing, mass, end_mass; // m; kg of the whole rope; kg added to its last particle
+    double length;                  // m, of the whole at rest; 0: as it starts
     double *origin, *along;         // [3]; NULL: (0, 0, 0) and (0, −1, 0)
 } ck_SceneRope;
 
@@ -45,6 +46,7 @@ typedef struct ck_SceneNetworkSpring {
     uint32_t ends[2];
     double stiffness, damping, rest; // N/m, N·s/m, m; rest 0: the distance at the start
     bool rigid;                      // a bar of fixed length
+    bool pull_only;                  // it does not push
     char *kind;                      // structural, shear, bend; NULL: structural
 } ck_SceneNetworkSpring;
 
@@ -75,6 +77,7 @@ typedef struct ck_SceneSprings {
     double stiffness, damping, shear, bend; // N/m, N·s/m, N/m, N/m
     double prestretch;                      // strain at the start: rest length = length/(1 + prestretch)
     bool rigid;                             // springs become bars of fixed length
+    bool pull_only;                         // they do not push
 } ck_SceneSprings;
 
 // A fabric, in place of springs: the same at any resolution.

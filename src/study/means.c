@@ -28,7 +28,8 @@ static void make_chain(Chain *chain, int links, const ck_MeansQuestion *question
         chain->position[3 * i + 1] = -REST * i;
         chain->mass[i] = question->mass;
         if (i)
-            chain->springs[i - 1] = (ck_Spring){i - 1, i, REST, question->stiffness, question->damping, CK_STRUCTURAL};
+            chain->springs[i - 1] = (ck_Spring){
+                .a = i - 1, .b = i, .rest = REST, .stiffness = question->stiffness, .damping = question->damping};
     }
     chain->model = (ck_Model){.name = "means",
                               .body = CK_NETWORK,

@@ -318,9 +318,9 @@ ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, 
     *prediction = (ck_Reference){.is_static = truth->reference.is_static, .horizon = model->frame_count};
     const Theory *theory = find_theory(engine->method, truth);
     bool network = !theory && truth->path_count && truth->form->is_static;
-    // no theory knows bending or wind
-    if ((!theory && !network) || left_theory(engine, used) || model->hinge_count || model->wind.face_count)
-        return CK_OK;
+    // no theory knows these
+    const unsigned beyond = CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY;
+    if ((!theory && !network) || left_theory(engine, used) || (model->terms & beyond)) return CK_OK;
     ck_Trajectory *path = &prediction->trajectory;
     ck_Status status = ck_trajectory_create(path, model, error);
     if (!status && network) path->frame_count = rest_on_network(model, engine, used, truth, path->data);

@@ -49,6 +49,7 @@ static double energy_of(const ck_Model *model, const double *position, double *g
         double d[3];
         ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
         double length = ck_length(d), stretch = length - spring->rest;
+        if (spring->pulls_only && stretch < 0) continue;
         energy += 0.5 * spring->stiffness * stretch * stretch;
         if (!gradient || !(length > 0)) continue;
         ck_add_scaled(gradient + 3 * spring->a, -spring->stiffness * stretch / length, d);
@@ -134,6 +135,7 @@ static void assemble(Newton *newton, double shift) {
         double d[3], block[9];
         ck_subtract(d, newton->position + 3 * spring->b, newton->position + 3 * spring->a);
         double length = ck_length(d), across = 1 - spring->rest / length;
+        if (spring->pulls_only && across < 0) continue;
         for (int row = 0; row < 3; row++)
             for (int column = 0; column < 3; column++)
                 block[3 * row + column] = spring->stiffness * ((1 - across) * d[row] * d[column] / (length * length) +

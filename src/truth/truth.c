@@ -19,21 +19,24 @@
 #include <string.h>
 
 #define CLOSED "closed form"
+// What a form must say that it knows.
+#define EXTRAS (CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY)
 
 // Adding a truth is one function and one row here.
 static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
-     .check = ck_truth_equilibrium_check, .solve = ck_truth_solve_equilibrium},
+     .terms = CK_TERM_WIND | CK_TERM_PULL_ONLY, .check = ck_truth_equilibrium_check,
+     .solve = ck_truth_solve_equilibrium},
     {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), step halved until two runs agree to 1e-9", false,
-     .terms = CK_TERM_RELEASE, .is_chaotic = true, .check = ck_truth_trajectory_check,
-     .solve = ck_truth_solve_trajectory},
+     .terms = CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY, .is_chaotic = true,
+     .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
-     true, .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE},
+     true, .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_PULL_ONLY},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
-     .at = ck_truth_vertical_chain},
+     .terms = CK_TERM_PULL_ONLY, .at = ck_truth_vertical_chain},
     {"catenary", CLOSED,
      "discrete elastic catenary: l_i = L + |T_i|/k, T_i = T_0 - sum of the weights before, shot to the far pin", true,
-     .at = ck_truth_catenary, .off = ck_truth_catenary_off},
+     .terms = CK_TERM_PULL_ONLY, .at = ck_truth_catenary, .off = ck_truth_catenary_off},
     {"cantilever", CLOSED,
      "elastica: EI*theta'' = -(w*(L - s) + P)*cos(theta), theta(0) given, theta'(L) = 0, shot from the tip", true,
      .at = ck_truth_cantilever, .off = ck_truth_cantilever_off},
@@ -41,7 +44,7 @@ static const ck_TruthForm forms[] = {
     {"terminal_speed", CLOSED, "v = v_t + (v_0 - v_t)*exp(-drag*t), v_t = a/drag", false,
      .at = ck_truth_terminal_speed},
     {"air_fall", CLOSED, "v = v_t*tanh(g*t/v_t), v_t = sqrt(2*m*g/(rho*C_d*A)): a level sheet let go in still air",
-     false, .at = ck_truth_air_fall},
+     false, .terms = CK_TERM_WIND, .at = ck_truth_air_fall},
     {"oscillator", CLOSED, "damped oscillator: u'' = -(k/m)*u - (c/m)*u'", false, .at = ck_truth_oscillator},
     {"longitudinal_modes", CLOSED, "fixed-free chain: w_j = 2*sqrt(k/m)*sin((2j-1)*pi/(2*(2N+1)))", false,
      .at = ck_truth_longitudinal_modes},
@@ -96,7 +99,7 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {
     if (!model->truth) return CK_OK;
     const ck_TruthForm *form = ck_truth_form_find(model->truth);
     if (!form) return fail_unknown(model, error);
-    unsigned beyond = model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE) & ~form->terms;
+    unsigned beyond = model->terms & EXTRAS & ~form->terms;
     for (int bit = 0; bit < CK_TERM_COUNT; bit++)
         if (beyond & (1u << bit))
             return ck_fail(error, CK_BAD_INPUT, "%s: truth %s knows no %s; take another, or none", model->name,

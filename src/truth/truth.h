@@ -15,7 +15,7 @@ typedef struct ck_TruthForm {
     const char *kind;   // "closed form", "equilibrium", "trajectory"
     const char *source; // the formula or method, and where it is from
     bool is_static;
-    unsigned terms; // of ck_Term: colliders and release, which most truths do not know
+    unsigned terms; // of ck_Term: colliders, release, wind and slack springs, which most truths do not know
 
     // Writes the state at time s: [3*n] m, [3*n] m/s. A static form ignores time.
     // Errors: CK_BAD_INPUT where the model is not what the formula is for; the message says what it needs.

@@ -29,6 +29,9 @@ static const struct {
      ":2:22:", "unknown key spaceing in rope; did you mean spacing?; known here: particles"},
     {"missing body", "name: r\n" TIME, ":1:1:", "needs one body"},
     {"two bodies", ROPE "cloth: {rows: 2, columns: 2, spacing: 1, mass: 1}\n" TIME, ":4:1:", "both rope and cloth"},
+    {"bars that only pull",
+     "name: r\nrope: {particles: 3, spacing: 0.1, mass: 1}\nsprings: {rigid: true, pull_only: true}\n" TIME,
+     ":3:35:", "rigid bars push, too"},
     {"bending of a bare network", NETWORK("[[0, 1]]") "bending: {stiffness: 1}\n",
      ":7:10:", "a network bends at its faces"},
     {"bending to somewhere", ROPE TIME "bending: {stiffness: 1, rest: curled}\n",
@@ -262,7 +265,7 @@ static void test_every_key(void **state) {
         &comparison,
         "name: all\nabout: every key there is\n"
         "cloth: {rows: 3, columns: 4, spacing: 0.5, mass: 12, origin: [1, 2, 3], across: [0, 0, 2], down: [0, -1, 0]}\n"
-        "springs: {stiffness: 10, damping: 0.1, shear: 5, bend: 1, rigid: false}\n"
+        "springs: {stiffness: 10, damping: 0.1, shear: 5, bend: 1, rigid: false, pull_only: true}\n"
         "bending: {stiffness: 0.2, rest: flat}\nwind: {velocity: [1, 0, 0], density: 1.2, drag: 1, lift: 0.5}\n"
         "pins: [top_edge, 2:3, 5]\nnoise: {amplitude: 0.01, seed: 7}\ngravity: [0, -10, 0]\ndrag: 2\nforce: [1, 0, "
         "0]\nvelocity: [0, 0, 1]\n"

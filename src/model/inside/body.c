@@ -48,7 +48,8 @@ void ck_body_add_spring(ck_Model *model, const ck_SceneSprings *springs, int a, 
                                                         .rest = length / (1 + springs->prestretch),
                                                         .stiffness = bar ? INFINITY : stiffness[kind],
                                                         .damping = springs->damping,
-                                                        .kind = kind};
+                                                        .kind = kind,
+                                                        .pulls_only = springs->pull_only};
 }
 
 static const double origin_default[3] = {0, 0, 0}, across_default[3] = {1, 0, 0}, down_default[3] = {0, -1, 0};
@@ -70,13 +71,14 @@ static ck_Status build_rope(ck_Model *model, const ck_Scene *scene, ck_Error *er
     }
     model->mass[model->particle_count - 1] += rope->end_mass;
     model->body = CK_ROPE;
-    model->spacing = rope->spacing;
-    model->size = rope->particles > 1 ? rope->spacing * (rope->particles - 1) : rope->spacing;
+    const double segments = rope->particles > 1 ? rope->particles - 1.0 : 1;
+    model->spacing = rope->length > 0 ? rope->length / segments : rope->spacing;
+    model->size = model->spacing * segments;
     const ck_SceneSprings *springs = ck_body_springs(scene);
     for (int i = 1; i < model->particle_count && springs; i++)
-        ck_body_add_spring(model, springs, i - 1, i, rope->spacing, CK_STRUCTURAL);
+        ck_body_add_spring(model, springs, i - 1, i, model->spacing, CK_STRUCTURAL);
     for (int i = 2; i < model->particle_count && springs; i++)
-        ck_body_add_spring(model, springs, i - 2, i, 2 * rope->spacing, CK_BEND);
+        ck_body_add_spring(model, springs, i - 2, i, 2 * model->spacing, CK_BEND);
     return CK_OK;
 }
 
@@ -126,10 +128,10 @@ static ck_Status add_own_spring(ck_Model *model, const ck_Scene *scene, uint32_t
     while (from->kind && kind < CK_SPRING_KINDS && strcmp(from->kind, kind_names[kind])) kind++;
     if (kind == CK_SPRING_KINDS)
         return ck_scene_fail(scene, path, error, "its kind is %s; it must be structural, shear or bend", from->kind);
-    if (from->rigid == (from->stiffness > 0) || (from->rigid && from->damping > 0))
-        return ck_scene_fail(
-            scene, path, error,
-            "it needs either a stiffness above 0, or rigid: true and no damping, which would do nothing");
+    if (from->rigid == (from->stiffness > 0) || (from->rigid && (from->damping > 0 || from->pull_only)))
+        return ck_scene_fail(scene, path, error,
+                             "it needs either a stiffness above 0, or rigid: true and no damping, which would do "
+                             "nothing, and no pull_only");
     // engines have bars or springs, not both
     if (model->spring_count && isinf(model->springs[0].stiffness) != from->rigid)
         return ck_scene_fail(scene, path, error, "it is %s where those before are not; make all alike",
@@ -141,7 +143,8 @@ static ck_Status add_own_spring(ck_Model *model, const ck_Scene *scene, uint32_t
                                                         .rest = from->rest > 0 ? from->rest : length,
                                                         .stiffness = from->rigid ? INFINITY : from->stiffness,
                                                         .damping = from->damping,
-                                                        .kind = (ck_SpringKind)kind};
+                                                        .kind = (ck_SpringKind)kind,
+                                                        .pulls_only = from->pull_only};
     return CK_OK;
 }
 

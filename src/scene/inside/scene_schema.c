@@ -14,6 +14,7 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"rope.spacing", CK_RANGE_POSITIVE},
     {"rope.mass", CK_RANGE_POSITIVE},
     {"rope.end_mass", CK_RANGE_NOT_NEGATIVE},
+    {"rope.length", CK_RANGE_POSITIVE},
     {"network.nodes[].mass", CK_RANGE_POSITIVE},
     {"network.springs[].stiffness", CK_RANGE_NOT_NEGATIVE},
     {"network.springs[].damping", CK_RANGE_NOT_NEGATIVE},
@@ -82,6 +83,7 @@ static const cyaml_schema_field_t rope_fields[] = {
     CYAML_FIELD_FLOAT("spacing", REQUIRED, ck_SceneRope, spacing),
     CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneRope, mass),
     CYAML_FIELD_FLOAT("end_mass", OPTIONAL, ck_SceneRope, end_mass),
+    CYAML_FIELD_FLOAT("length", OPTIONAL, ck_SceneRope, length),
     CYAML_FIELD_SEQUENCE_FIXED("origin", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRope, origin, &number, 3),
     CYAML_FIELD_SEQUENCE_FIXED("along", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRope, along, &number, 3),
     CYAML_FIELD_END,
@@ -112,6 +114,7 @@ static const cyaml_schema_field_t network_spring_fields[] = {
     CYAML_FIELD_FLOAT("damping", OPTIONAL, ck_SceneNetworkSpring, damping),
     CYAML_FIELD_FLOAT("rest", OPTIONAL, ck_SceneNetworkSpring, rest),
     CYAML_FIELD_BOOL("rigid", OPTIONAL, ck_SceneNetworkSpring, rigid),
+    CYAML_FIELD_BOOL("pull_only", OPTIONAL, ck_SceneNetworkSpring, pull_only),
     CYAML_FIELD_STRING_PTR("kind", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneNetworkSpring, kind, 1, 20),
     CYAML_FIELD_END,
 };
@@ -150,6 +153,7 @@ static const cyaml_schema_field_t springs_fields[] = {
     CYAML_FIELD_FLOAT("bend", OPTIONAL, ck_SceneSprings, bend),
     CYAML_FIELD_FLOAT("prestretch", OPTIONAL, ck_SceneSprings, prestretch),
     CYAML_FIELD_BOOL("rigid", OPTIONAL, ck_SceneSprings, rigid),
+    CYAML_FIELD_BOOL("pull_only", OPTIONAL, ck_SceneSprings, pull_only),
     CYAML_FIELD_END,
 };
 

@@ -28,6 +28,7 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         const ck_Spring *spring = &model->springs[i];
         const double numbers[5] = {spring->a, spring->b, spring->rest, spring->stiffness, spring->damping};
         value = ck_hash(value, numbers, sizeof numbers);
+        if (spring->pulls_only) value = ck_hash(value, &spring->pulls_only, sizeof spring->pulls_only);
     }
     for (int i = 0; i < model->hinge_count; i++) {
         const ck_Hinge *hinge = &model->hinges[i];
