@@ -153,7 +153,7 @@ static void test_refused(void **state) {
         {HOSTILE " old", "it said 'clothcheck 0' where it must say clothcheck 1"},
         {HOSTILE " garbled",
          "it said 'hello yourself' where it must say version, about, models, setting, positions, precision"},
-        {HOSTILE " wind", "it said 'wind' where it must say models with words of springs"},
+        {HOSTILE " rain", "it said 'rain' where it must say models with words of springs"},
         {"/none/there", "does not answer hello: exit status 127"},
     };
     ck_Engine *engine;

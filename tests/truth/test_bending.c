@@ -69,6 +69,44 @@ static void test_cantilever(void **state) {
     }
 }
 
+// The load at which an upright column of that many segments, clamped below and 1 m long from the middle of its first
+// one, is no longer stable, over π²·EI/4L².
+static double critical_load(int segments) {
+    const double spacing = 1 / (segments + 0.5), bending = 0.2, euler = M_PI * M_PI * bending / 4,
+                 stiffness = 1e5 / spacing;
+    double low = 0.5, high = 1.5;
+    while (high - low > 1e-7) {
+        const double share = 0.5 * (low + high), load = share * euler;
+        Fixture fixture;
+        ck_Stiffness *column;
+        char text[500];
+        // all but massless itself
+        snprintf(text, sizeof text,
+                 "name: e\nrope: {particles: %d, spacing: %.17g, mass: 1e-9, end_mass: %.17g, along: [0, 1, 0]}\n"
+                 "springs: {stiffness: %.17g}\nbending: {stiffness: %.17g}\npins: [0, 1]\ngravity: [0, -10, 0]\n"
+                 "time: {duration: 1, step: 1}\n",
+                 segments + 2, spacing, load / 10, stiffness, bending);
+        fixture_load(&fixture, text);
+        for (int i = 2; i < fixture.model.particle_count; i++)
+            fixture.model.position[3 * i + 1] -= (i - 1) * load / stiffness;
+        const ck_Status status = ck_stiffness_create(&column, &fixture.model, fixture.model.position);
+        *(status ? &high : &low) = share;
+        ck_stiffness_destroy(column);
+        fixture_free(&fixture);
+    }
+    return low;
+}
+
+// Euler's column: right to the second order in segments, and what its springs are shorter by, 5e-6.
+static void test_strut(void **state) {
+    (void)state;
+    double loads[3];
+    for (int i = 0; i < 3; i++) loads[i] = critical_load(10 << i);
+    print_message("critical load at 10, 20, 40 segments: %.5f, %.5f, %.5f of Euler's\n", loads[0], loads[1], loads[2]);
+    assert_near("order", log2((loads[0] - loads[1]) / (loads[1] - loads[2])), 2, 0.1);
+    assert_near("limit", loads[2] + (loads[2] - loads[1]) / 3, 1, 5e-5);
+}
+
 // A strip of 64 hinges under the moment 2π·EI/L at its ends: each turns where its energy's slope is the moment, and the
 // polygon of such turns closes to 1e-3 of its length.
 static void test_circle(void **state) {
@@ -319,10 +357,10 @@ static void test_motion(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_elastica), cmocka_unit_test(test_cantilever), cmocka_unit_test(test_circle),
-        cmocka_unit_test(test_forces),   cmocka_unit_test(test_rest),       cmocka_unit_test(test_sheet),
-        cmocka_unit_test(test_plate),    cmocka_unit_test(test_triangles),  cmocka_unit_test(test_engines),
-        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_elastica), cmocka_unit_test(test_cantilever), cmocka_unit_test(test_strut),
+        cmocka_unit_test(test_circle),   cmocka_unit_test(test_forces),     cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_sheet),    cmocka_unit_test(test_plate),      cmocka_unit_test(test_triangles),
+        cmocka_unit_test(test_engines),  cmocka_unit_test(test_motion),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
