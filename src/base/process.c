@@ -217,6 +217,13 @@ static void *join_crew(void *context) {
 
 #define MOST_THREADS 64
 
+int ck_parallel_with_children(int jobs) {
+#ifdef __SANITIZE_ADDRESS__
+    jobs = 1;
+#endif
+    return jobs;
+}
+
 ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int index, ck_Error *error), void *context,
                       ck_Error *error) {
     Crew crew = {.count = count, .work = work, .context = context, .failed = count};
@@ -225,9 +232,6 @@ ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int 
     int cores = (int)sysconf(_SC_NPROCESSORS_ONLN), most = jobs > 0 && jobs < cores ? jobs : cores, started = 0;
     if (most > count) most = count;
     if (most > MOST_THREADS) most = MOST_THREADS;
-#ifdef __SANITIZE_ADDRESS__
-    most = 1; // a child that is forked while a thread allocates would wait for the sanitizer's lock for ever
-#endif
     pthread_mutex_init(&crew.lock, NULL);
     // the caller is one of the crew, so that all is done where no thread can be started
     while (started + 1 < most && !pthread_create(&threads[started], NULL, join_crew, &crew)) started++;

@@ -49,6 +49,10 @@ size_t ck_process_memory(void);
 ck_Status ck_parallel(int count, int jobs, ck_Status (*work)(void *context, int index, ck_Error *error), void *context,
                       ck_Error *error);
 
+// The jobs of work that starts children: one with the address sanitizer, as a child that is forked while a thread
+// allocates would wait for the sanitizer's lock for ever.
+int ck_parallel_with_children(int jobs);
+
 // Zeroed memory that a child's writes are seen in. NULL when there is none. Free with ck_shared_free.
 void *ck_shared_allocate(size_t bytes);
 void ck_shared_free(void *memory, size_t bytes);

@@ -118,7 +118,8 @@ static ck_Status measure_all(ck_Comparison *comparison, const ck_CompareOptions 
         comparison->folds[i] = (ck_Fold){NAN, NAN, NAN};
     }
     comparison->run_count = options->engine_count;
-    return ck_parallel(options->engine_count, options->jobs, measure_one, &(Work){comparison, options}, error);
+    return ck_parallel(options->engine_count, ck_parallel_with_children(options->jobs), measure_one,
+                       &(Work){comparison, options}, error);
 }
 
 // Repeats in rounds, each in an order of its own: a slow spell of the machine hits all engines alike.

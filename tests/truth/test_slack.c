@@ -39,7 +39,7 @@ static void test_reference(void **state) {
     fixture_load_truth(&fixture,
                        "name: s\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.02, down: [0, 0, 1]}\n"
                        "springs: {stiffness: 60, shear: 30, damping: 0.01, pull_only: true}\npins: [top_edge]\n"
-                       "gravity: [0, -9.81, 0]\ntime: {duration: 0.3, fps: 100}\ntruth: trajectory\n");
+                       "gravity: [0, -9.81, 0]\ntime: {duration: 0.1, fps: 100}\ntruth: trajectory\n");
     if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
     const ck_Settings settings = {.substeps = 100};
     fixture_run(&path, &fixture.model, ck_engine_find("native-verlet"), &settings, NULL);

@@ -100,7 +100,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     int count = arguments.options.engine_count * card.property_count, failed = 0;
     card.results = status ? NULL : calloc((size_t)count + 1, sizeof *card.results);
     if (!status && !card.results) status = ck_fail(&error, CK_NO_MEMORY, "out of memory");
-    if (!status) status = ck_parallel(count, arguments.options.jobs, ask_one, &card, &error);
+    if (!status) status = ck_parallel(count, ck_parallel_with_children(arguments.options.jobs), ask_one, &card, &error);
     ck_progress_clear();
     if (!status) status = write_card(&card, &error);
     if (!status) failed = show_card(&arguments.answer, &card);

@@ -171,7 +171,8 @@ static void run_batch(ck_TuneSearch *search, ck_TunePoint *points, int *todo, in
     // no run outlasts the search
     work.options.limits.seconds = fmin(work.options.limits.seconds, fmax(1, search->deadline - ck_wall()));
     // side by side they would slow each other down where time is what is asked for
-    search->status = ck_parallel(count, isnan(goal->frame) ? search->options->jobs : 1, run_one, &work, search->error);
+    search->status = ck_parallel(count, ck_parallel_with_children(isnan(goal->frame) ? search->options->jobs : 1),
+                                 run_one, &work, search->error);
     bool is_cut = work.options.limits.seconds < search->options->limits.seconds;
     for (int i = 0; i < count; i++) search->is_late |= is_cut && points[todo[i]].trial.status == CK_RUN_TIMED_OUT;
 }
