@@ -27,7 +27,7 @@ typedef struct ck_ReferencePath {
     double agreement;           // largest distance of fine and coarse up to the horizon, / size
 } ck_ReferencePath;
 
-// Halves the step until two paths agree to 1e-9 of the size up to the horizon.
+// Halves the step until two paths agree to 1e-9 of the size up to the horizon, to 1e-6 where forces have kinks.
 // Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars or colliders, or no affordable step agrees.
 // Free with ck_reference_path_free in any case.
 ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error);
