@@ -23,15 +23,10 @@ static void bend(const ck_Native *native, double *acceleration) {
     }
 }
 
-// Acceleration of all particles from springs, hinges, field and drag.
-//   position, velocity  [3*n] in, m and m/s
-//   acceleration        [3*n] out, m/s²
-// Cost: one pass over springs, one over particles. Cannot fail.
-static void accelerate(const ck_Native *native, double *acceleration) {
+// Adds the acceleration by springs. hangs: a constant of the caller, so that springs which also push are not asked.
+static inline void pull(const ck_Native *native, double *acceleration, const bool hangs) {
     const ck_Model *model = native->model;
     const double *position = native->position, *velocity = native->other_velocity;
-    const bool hangs = model->terms & CK_TERM_PULL_ONLY;
-    memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         double d[3], v[3];
@@ -44,6 +39,20 @@ static void accelerate(const ck_Native *native, double *acceleration) {
         ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
         ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
     }
+}
+
+// Acceleration of all particles from springs, hinges, air, field and drag.
+//   position, velocity  [3*n] in, m and m/s
+//   acceleration        [3*n] out, m/s²
+// Cost: one pass over springs, one over particles. Cannot fail.
+static void accelerate(const ck_Native *native, double *acceleration) {
+    const ck_Model *model = native->model;
+    const double *velocity = native->other_velocity;
+    memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
+    if (model->terms & CK_TERM_PULL_ONLY)
+        pull(native, acceleration, true);
+    else
+        pull(native, acceleration, false);
     if (model->hinge_count) bend(native, acceleration);
     if (model->wind.face_count) ck_native_blow(native, velocity, acceleration);
     for (int i = 0; i < model->particle_count; i++) {

@@ -53,15 +53,19 @@ void ck_rule_breakdowns(ck_Findings *findings, const ck_CsvTable *const *tables)
         if (!is_first) continue;
         char scenes[160] = "";
         size_t used = 0;
-        for (int k = i; k < runs->row_count && used < sizeof scenes; k++)
-            if (has_broken_down(runs, k) && ck_row_is_same(runs, k, i, "engine"))
-                used += (size_t)snprintf(scenes + used, sizeof scenes - used, "%s%s", used ? ", " : "",
-                                         ck_csv_text_of(runs, k, "scene"));
+        bool is_cut = false;
+        for (int k = i; k < runs->row_count; k++) {
+            const char *scene = ck_csv_text_of(runs, k, "scene");
+            if (!has_broken_down(runs, k) || !ck_row_is_same(runs, k, i, "engine")) continue;
+            // whole names, and room for the dots
+            is_cut |= used + strlen(scene) + 10 > sizeof scenes;
+            if (!is_cut) used += (size_t)snprintf(scenes + used, sizeof scenes - used, "%s%s", used ? ", " : "", scene);
+        }
         const char *reason = ck_csv_text_of(runs, i, "reason"), *end = strchr(reason, ';');
         ck_findings_add(findings, "breakdown", ck_csv_text_of(runs, i, "scene"), ck_csv_text_of(runs, i, "engine"),
-                        ck_csv_text_of(runs, i, "command"), "%s breaks down on %.150s%s; on %s: %.*s",
-                        ck_csv_text_of(runs, i, "engine"), scenes, used >= sizeof scenes ? " …" : "",
-                        ck_csv_text_of(runs, i, "scene"), end ? (int)(end - reason) : 200, reason);
+                        ck_csv_text_of(runs, i, "command"), "%s breaks down on %s%s; on %s: %.*s",
+                        ck_csv_text_of(runs, i, "engine"), scenes, is_cut ? " …" : "", ck_csv_text_of(runs, i, "scene"),
+                        end ? (int)(end - reason) : 200, reason);
     }
 }
 
