@@ -401,3 +401,71 @@ ck_Status ck_truth_air_fall(const ck_Model *model, double time, double *position
     }
     return CK_OK;
 }
+
+// What moves by springs and the field alone.
+static bool is_undamped(const ck_Model *model) {
+    return !(model->terms & (CK_TERM_DAMPING | CK_TERM_DRAG | CK_TERM_FORCE)) && !model->collider_count;
+}
+
+ck_Status ck_truth_conical_pendulum(const ck_Model *model, double time, double *position, double *velocity,
+                                    ck_Error *error) {
+    double along[3], down[3], radius[3], depth = 0, off = INFINITY;
+    const double g = ck_length(model->gravity), *v = model->velocity + 3;
+    bool fits = ck_shape_is_chain(model) && model->particle_count == 2 && model->pin_count == 1 && model->pinned[0] &&
+                g > 0 && is_undamped(model);
+    if (fits) {
+        ck_subtract(along, model->position + 3, model->position);
+        for (int axis = 0; axis < 3; axis++) down[axis] = model->gravity[axis] / g;
+        depth = ck_dot(along, down);
+        for (int axis = 0; axis < 3; axis++) radius[axis] = along[axis] - depth * down[axis];
+        // the spring carries the weight, and turns the speed; both as shares of what they should be
+        const ck_Spring *spring = &model->springs[0];
+        const double length = ck_length(along), pull = model->mass[1] * g * length / depth,
+                     wanted = isinf(spring->stiffness) ? spring->rest : spring->rest + pull / spring->stiffness,
+                     speed = ck_length(radius) * sqrt(g / depth);
+        off = fmax(fabs(length / wanted - 1), fabs(ck_length(v) / speed - 1)) +
+              (fabs(ck_dot(v, radius)) / ck_length(radius) + fabs(ck_dot(v, down))) / speed;
+    }
+    ck_Status status =
+        ck_truth_need(depth > 0 && off < 1e-6, model, error,
+                      "one spring or bar from a pin, undamped, whose mass starts on its circle: level, "
+                      "across its radius r, at r*sqrt(g/h), and its spring as long as m*g*l/h stretches it");
+    if (status) return status;
+    start_from(model, position, velocity);
+    const double rate = sqrt(g / depth), cosine = cos(rate * time), sine = sin(rate * time);
+    for (int axis = 0; axis < 3; axis++) {
+        position[3 + axis] = model->position[axis] + depth * down[axis] + cosine * radius[axis] + sine * v[axis] / rate;
+        velocity[3 + axis] = cosine * v[axis] - sine * rate * radius[axis];
+    }
+    return CK_OK;
+}
+
+ck_Status ck_truth_plucked_mass(const ck_Model *model, double time, double *position, double *velocity,
+                                ck_Error *error) {
+    double line[3], pluck[3] = {0}, half = 0, amplitude = 0;
+    bool fits = ck_shape_is_chain(model) && model->particle_count == 3 && model->pin_count == 2 && model->pinned[0] &&
+                model->pinned[2] && is_undamped(model) && !(model->terms & (CK_TERM_GRAVITY | CK_TERM_VELOCITY)) &&
+                model->springs[0].stiffness == model->springs[1].stiffness && isfinite(model->springs[0].stiffness);
+    if (fits) {
+        ck_subtract(line, model->position + 6, model->position);
+        half = 0.5 * ck_length(line);
+        for (int axis = 0; axis < 3; axis++)
+            pluck[axis] = model->position[3 + axis] - 0.5 * (model->position[axis] + model->position[6 + axis]);
+        amplitude = ck_length(pluck);
+        for (int i = 0; i < 2; i++) fits &= fabs(model->springs[i].rest / half - 1) < 1e-9;
+        fits &= fabs(ck_dot(pluck, line)) < 1e-9 * half * amplitude && amplitude > 0 && amplitude < 0.2 * half;
+    }
+    ck_Status status = ck_truth_need(fits, model, error,
+                                     "a mass between two alike springs that are pinned at their other ends and have no "
+                                     "tension along the line, plucked across it by less than a fifth of a spring");
+    if (status) return status;
+    double sn, cn, dn;
+    const double rate = amplitude / half * sqrt(model->springs[0].stiffness / model->mass[1]);
+    jacobi(rate * time, sqrt(0.5), &sn, &cn, &dn);
+    start_from(model, position, velocity);
+    for (int axis = 0; axis < 3; axis++) {
+        position[3 + axis] += (cn - 1) * pluck[axis];
+        velocity[3 + axis] = -rate * sn * dn * pluck[axis];
+    }
+    return CK_OK;
+}

@@ -26,6 +26,15 @@ ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position
 // Turns the bar by so much towards its rest.
 void ck_truth_nudge_pendulum(ck_Model *model, double share);
 
+// A mass on one spring or bar that circles below its pin: cos θ = g/(ω²·l), l = L/(1 − m·ω²/k). Exact.
+ck_Status ck_truth_conical_pendulum(const ck_Model *model, double time, double *position, double *velocity,
+                                    ck_Error *error);
+
+// A mass between two springs without tension, plucked sideways: m·y'' = −k·y³/L², of period 7.4163·L·√(m/k)/A. Of
+// amplitudes A that are small beside L.
+ck_Status ck_truth_plucked_mass(const ck_Model *model, double time, double *position, double *velocity,
+                                ck_Error *error);
+
 // A flat sheet across the field, let go at rest in still air: masses by the area around each particle.
 ck_Status ck_truth_air_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
 
