@@ -203,7 +203,12 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
         fprintf(out, "%d %d %.17g %.17g %.17g %s\n", spring->a, spring->b, spring->rest, spring->stiffness,
                 spring->damping, ck_export_kinds[spring->kind]);
     }
-    // only who said that it models bending and wind is told of them
+    // only who said that it models these is told of them
+    int slack = 0;
+    for (int i = 0; i < model->spring_count; i++) slack += model->springs[i].pulls_only;
+    if (slack) fprintf(out, "slack %d\n", slack);
+    for (int i = 0; i < model->spring_count && slack; i++)
+        if (model->springs[i].pulls_only) fprintf(out, "%d\n", i);
     if (model->hinge_count) fprintf(out, "hinges %d\n", model->hinge_count);
     for (int i = 0; i < model->hinge_count; i++) {
         const ck_Hinge *hinge = &model->hinges[i];

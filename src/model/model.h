@@ -145,8 +145,8 @@ double ck_model_inverse_mass(const ck_Model *model, int particle);
 double ck_model_free_mass(const ck_Model *model);
 
 // The first spring of a kind between particles that are not pinned, else any of it, or NULL where there is none. All of
-// a kind have the same stiffness and damping, but in a network whose springs have values of their own: there it stands
-// for the others.
+// a kind have the same stiffness and damping, but in a network whose springs have values of their own, and of a
+// material: there it stands for the others.
 const ck_Spring *ck_model_spring_of_kind(const ck_Model *model, ck_SpringKind kind);
 
 // The mass-weighted mean of ck_model_field over particles that are not pinned, in m/s²: the direction of fall.

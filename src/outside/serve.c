@@ -108,6 +108,15 @@ static void read_colliders(Server *server) {
     }
 }
 
+// Springs that only pull, by their numbers.
+static void read_slack(Server *server) {
+    for (int left = count(server); left > 0; left--) {
+        const int spring = (int)number(server);
+        if (spring < 0 || spring >= server->model.spring_count) fail("no such spring hangs slack");
+        server->model.springs[spring].pulls_only = true;
+    }
+}
+
 static void read_hinges(Server *server) {
     ck_Model *model = &server->model;
     model->hinge_count = count(server);
@@ -159,6 +168,7 @@ static unsigned terms_of(const ck_Model *model) {
     for (int i = 0; i < model->spring_count; i++) {
         if (isinf(model->springs[i].stiffness)) terms |= CK_TERM_RIGID;
         if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
+        if (model->springs[i].pulls_only) terms |= CK_TERM_PULL_ONLY;
     }
     if (model->hinge_count) terms |= CK_TERM_BENDING;
     if (model->wind.face_count) terms |= CK_TERM_WIND;
@@ -196,6 +206,8 @@ static void read_scene(Server *server) {
             read_particles(server);
         else if (!strcmp(word, "springs"))
             read_springs(server);
+        else if (!strcmp(word, "slack"))
+            read_slack(server);
         else if (!strcmp(word, "wind"))
             read_wind(server);
         else if (!strcmp(word, "faces"))
