@@ -299,7 +299,7 @@ static void test_damage(void **state) {
         size_t size;
     } whole[] = {{"d.obj", obj, sizeof obj}, {"d.ply", ply, sizeof ply}, {"d.gltf", gltf, sizeof gltf}};
     ck_Random random = ck_random_seed(5);
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < 36; i++) {
         char bytes[2000];
         const size_t size = whole[i % 3].size - 1;
         memcpy(bytes, whole[i % 3].text, size);
