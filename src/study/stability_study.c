@@ -1,6 +1,7 @@
 #include "stability_study.h"
 
 #include "equilibrium.h"
+#include "hinges.h"
 #include "rounding.h"
 #include "springs.h"
 #include "statistics.h"
@@ -52,8 +53,23 @@ bool ck_stability_value(int index, char *name, size_t size) {
     return true;
 }
 
+// Adds w·(pull·I + turn·v·vᵀ)·Σ w·d of a hinge of vector v.
+static void turn_hinge(const ck_Hinge *hinge, const double *position, const double *d, double *force) {
+    const ck_HingeState state = ck_hinge_state(hinge, position);
+    double moved[3] = {0, 0, 0};
+    for (int k = 0; k < 4; k++)
+        if (hinge->particles[k] >= 0) ck_add_scaled(moved, hinge->weights[k], d + 3 * hinge->particles[k]);
+    const double turned = state.turn * ck_dot(state.vector, moved);
+    for (int k = 0; k < 4; k++) {
+        if (hinge->particles[k] < 0) continue;
+        ck_add_scaled(force + 3 * hinge->particles[k], hinge->weights[k] * state.pull, moved);
+        ck_add_scaled(force + 3 * hinge->particles[k], hinge->weights[k] * turned, state.vector);
+    }
+}
+
 // force = K·d, N, of small displacements d about a rest: k·[n·nᵀ + (1 − L/l)·(1 − n·nᵀ)] of each spring, or without the
-// first term what tension does across springs.
+// first term what tension does across springs; and of hinges, which every engine that is judged by this steps
+// explicitly.
 static void apply_stiffness(const ck_Model *model, const double *position, const double *d, bool is_across,
                             double *force) {
     memset(force, 0, 3 * sizeof *force * (size_t)model->particle_count);
@@ -63,6 +79,7 @@ static void apply_stiffness(const ck_Model *model, const double *position, const
         ck_subtract(n, position + 3 * spring->b, position + 3 * spring->a);
         ck_subtract(moved, d + 3 * spring->b, d + 3 * spring->a);
         double length = ck_length(n), across = 1 - spring->rest / length;
+        if (spring->pulls_only && across < 0) continue;
         double along = ck_dot(moved, n) / (length * length) * ((is_across ? 0 : 1) - across);
         for (int axis = 0; axis < 3; axis++) {
             double pull = spring->stiffness * (across * moved[axis] + along * n[axis]);
@@ -70,6 +87,7 @@ static void apply_stiffness(const ck_Model *model, const double *position, const
             force[3 * spring->b + axis] += pull;
         }
     }
+    for (int i = 0; i < model->hinge_count; i++) turn_hinge(&model->hinges[i], position, d, force);
 }
 
 // What springs take of the motion d, per mass: dᵀ·C·d/(dᵀ·M·d), where C is c·n·nᵀ of each spring.
