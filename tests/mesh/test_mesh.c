@@ -157,6 +157,7 @@ static void test_options(void **state) {
         int vertices;
         double highest; // m
     } cases[] = {{{.scale = 1, .up = 'y'}, 6, 0},
+                 {{.scale = 1, .up = 'y', .weld = 1e-300}, 6, 0},
                  {{.scale = 1, .up = 'y', .weld = 0.0015}, 4, 0},
                  {{.scale = 0.001, .up = 'z', .weld = 1.5e-6}, 4, 0.001001},
                  {{.scale = 2, .up = 'x', .weld = 0.003}, 4, 2.002}};

@@ -2,6 +2,7 @@
 
 #include "vector.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -24,7 +25,7 @@ static void cell_of(int64_t *cell, const Grid *grid, const double *position) {
     for (int axis = 0; axis < 3; axis++) {
         const double place = position[axis] + 0.0; // −0 is at 0
         if (grid->cell > 0)
-            cell[axis] = (int64_t)fmax(-9e18, fmin(9e18, floor(place / grid->cell)));
+            cell[axis] = (int64_t)floor(place / grid->cell);
         else
             memcpy(&cell[axis], &place, sizeof place);
     }
@@ -47,10 +48,13 @@ static int find(const Grid *grid, const double *position, int vertex) {
 int ck_weld(int *place, const double *position, int count, double distance) {
     size_t buckets = 16;
     while (buckets < (size_t)count) buckets *= 2;
+    double largest = 0;
+    for (int i = 0; i < 3 * count; i++) largest = fmax(largest, fabs(position[i]));
     Grid grid = {.first = malloc(buckets * sizeof(int)),
                  .next = malloc(((size_t)count + 1) * sizeof(int)),
                  .mask = buckets - 1,
-                 .cell = distance};
+                 // what coordinates cannot tell from none is none: its cells could not be numbered
+                 .cell = distance > DBL_EPSILON * largest ? distance : 0};
     int places = grid.first && grid.next ? 0 : -1;
     for (size_t i = 0; i < buckets && !places; i++) grid.first[i] = -1;
     for (int i = 0; i < count && places >= 0; i++) {
