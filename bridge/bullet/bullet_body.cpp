@@ -143,8 +143,8 @@ void ck_BulletOuter::update(btVector3 btSoftBody::Node::*position) {
             speed[static_cast<size_t>(3 * i + axis)] = body.soft->m_nodes[node(i)].m_v[axis];
         }
     std::fill(force.begin(), force.end(), 0);
-    ck_hinges_add_force(body.model, at.data(), force.data());
-    ck_wind_add_force(body.model, at.data(), speed.data(), force.data());
+    ck_hinges_add_force(body.model, at.data(), 1, nullptr, force.data());
+    ck_wind_add_force(body.model, at.data(), speed.data(), nullptr, force.data());
     for (int i = 0; i < body.model->hinge_count; i++)
         pull[static_cast<size_t>(i)] = std::fmax(0, ck_hinge_state(&body.model->hinges[i], at.data()).pull);
 }

@@ -65,7 +65,6 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     if (frequency > 0) limit = fmin(limit, 1 / frequency);
     limit = fmin(limit, 1 / ck_stability_damping_rate(model));
     limit = fmin(limit, ck_stability_drag_time(model, 0.1));
-    limit = fmin(limit, ck_stability_bending_time(model));
     if (model->collider_count) limit = fmin(limit, 1.0 / 1000);
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].restitution > 0) limit = fmin(limit, model->step / (4 * CK_MUJOCO_BOUNCE_STEPS));
@@ -219,8 +218,8 @@ static void add_outer(MujocoWorld *world) {
     double *position = world->outer, *velocity = position + count, *force = velocity + count;
     read_units(world, position, velocity, 1);
     for (size_t i = 0; i < count; i++) force[i] = model->force[i % 3];
-    ck_hinges_add_force(model, position, force);
-    ck_wind_add_force(model, position, velocity, force);
+    ck_hinges_add_force(model, position, 1, NULL, force);
+    ck_wind_add_force(model, position, velocity, NULL, force);
     for (size_t i = 0; i < count; i++)
         if (world->body[i / 3]) world->data->xfrc_applied[6 * (size_t)world->body[i / 3] + i % 3] = force[i];
 }

@@ -271,8 +271,8 @@ static void add_outer(OdeWorld *ode) {
         velocity[i] = dBodyGetLinearVel(ode->bodies[i / 3])[i % 3];
         force[i] = 0;
     }
-    ck_hinges_add_force(ode->model, position, force);
-    ck_wind_add_force(ode->model, position, velocity, force);
+    ck_hinges_add_force(ode->model, position, 1, NULL, force);
+    ck_wind_add_force(ode->model, position, velocity, NULL, force);
     for (size_t i = 0; i < count; i += 3)
         if (!dBodyIsKinematic(ode->bodies[i / 3]))
             dBodyAddForce(ode->bodies[i / 3], force[i], force[i + 1], force[i + 2]);

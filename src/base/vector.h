@@ -35,6 +35,14 @@ static inline void ck_cross(double *out, const double *a, const double *b) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+// out = (b − a) × (c − a): across the triangle of three points, twice as long as its area is large
+static inline void ck_triangle_normal(double *out, const double *a, const double *b, const double *c) {
+    double one[3], other[3];
+    ck_subtract(one, b, a);
+    ck_subtract(other, c, a);
+    ck_cross(out, one, other);
+}
+
 static inline double ck_distance(const double *a, const double *b) {
     double difference[3];
     ck_subtract(difference, a, b);

@@ -42,13 +42,16 @@ double ck_hinges_energy(const ck_Model *model, const double *position) {
     return energy;
 }
 
-void ck_hinges_add_force(const ck_Model *model, const double *position, double *force) {
+void ck_hinges_add_force(const ck_Model *model, const double *position, double factor, const double *by, double *out) {
     for (int i = 0; i < model->hinge_count; i++) {
         const ck_Hinge *hinge = &model->hinges[i];
         const ck_HingeState state = ck_hinge_state(hinge, position);
-        for (int k = 0; k < 4; k++)
-            if (hinge->particles[k] >= 0)
-                ck_add_scaled(force + 3 * hinge->particles[k], -hinge->weights[k] * state.pull, state.vector);
+        for (int k = 0; k < 4; k++) {
+            const int particle = hinge->particles[k];
+            if (particle >= 0)
+                ck_add_scaled(out + 3 * particle, -factor * hinge->weights[k] * state.pull * (by ? by[particle] : 1),
+                              state.vector);
+        }
     }
 }
 

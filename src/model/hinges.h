@@ -29,10 +29,11 @@ ck_HingeState ck_hinge_state(const ck_Hinge *hinge, const double *position);
 // The energy of all, J.
 double ck_hinges_energy(const ck_Model *model, const double *position);
 
-// Adds their forces, N.
-//   position  [3*n] in, m;  force  [3*n] in-out
+// Adds factor times their forces, N, each particle's times its own of by, [n]; NULL: 1. With 1/m it is an acceleration,
+// with −1 the energy's slope.
+//   position  [3*n] in, m;  out  [3*n] in-out
 // Cost: one pass over hinges.
-void ck_hinges_add_force(const ck_Model *model, const double *position, double *force);
+void ck_hinges_add_force(const ck_Model *model, const double *position, double factor, const double *by, double *out);
 
 // A bound on the square of the highest frequency of bending about a flat body, rad²/s²: the largest sum of a row of the
 // stiffness, scaled by masses; of a long even rope it is that frequency's. Source: Gershgorin 1931. Errors:

@@ -73,8 +73,8 @@ void ck_springs_accelerate(const ck_Model *model, const double *position, const 
         ck_add_scaled(acceleration + 3 * spring->a, pull, d);
         ck_add_scaled(acceleration + 3 * spring->b, -pull, d);
     }
-    if (model->hinge_count) ck_hinges_add_force(model, position, acceleration);
-    if (model->wind.face_count) ck_wind_add_force(model, position, velocity, acceleration);
+    if (model->hinge_count) ck_hinges_add_force(model, position, 1, NULL, acceleration);
+    if (model->wind.face_count) ck_wind_add_force(model, position, velocity, NULL, acceleration);
     for (int i = 0; i < model->particle_count; i++) {
         double field[3], inverse = 1 / model->mass[i];
         ck_model_field(model, i, field);

@@ -15,12 +15,17 @@ extern "C" {
 // Source: Keckeisen, Kimmerle, Thomaszewski, Wacker 2004, Modelling effects of wind fields in cloth animations.
 void ck_wind_face_force(const ck_Model *model, int face, const double *position, const double *velocity, double *force);
 
-// Adds the force on every face to its corners. Cost: one pass over faces.
-//   force  [3*n] in-out, N
-void ck_wind_add_force(const ck_Model *model, const double *position, const double *velocity, double *force);
+// Adds the force on every face to its corners, N, each particle's times its own of by, [n]; NULL: 1.
+//   out  [3*n] in-out
+// Cost: one pass over faces.
+void ck_wind_add_force(const ck_Model *model, const double *position, const double *velocity, const double *by,
+                       double *out);
 
-// A bound on the rate, 1/s, at which air takes a particle's speed: ρ·(C_d + C_l)·A·|u|/m at the fastest that it blows
-// or the body falls.
+// Adds each particle's third of the area of the faces around it, m², to share [n]. Returns the sum.
+double ck_wind_share_area(const ck_Model *model, double *share);
+
+// A bound on the rate, 1/s, at which air takes a particle's speed: ρ·(C_d + C_l)·A·|u|/m of the one with the most area
+// for its mass, at the fastest that it blows or the body falls. INFINITY without memory.
 double ck_wind_rate(const ck_Model *model);
 
 // True where the air itself moves, and so gives energy.

@@ -3,7 +3,6 @@
 #include "constraint_kernel.h"
 #include "loops.h"
 #include "vector.h"
-#include "wind.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -121,18 +120,6 @@ void ck_native_project(ck_Native *native) {
         if (native->inverse_mass[i] > 0)
             ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i,
                                native->position + 3 * i);
-}
-
-void ck_native_blow(const ck_Native *native, const double *velocity, double *acceleration) {
-    const ck_Wind *wind = &native->model->wind;
-    for (int i = 0; i < wind->face_count; i++) {
-        double force[3];
-        ck_wind_face_force(native->model, i, native->position, velocity, force);
-        for (int k = 0; k < 3; k++) {
-            const int particle = wind->faces[i][k];
-            ck_add_scaled(acceleration + 3 * particle, native->inverse_mass[particle] / 3, force);
-        }
-    }
 }
 
 bool ck_native_is_finite(const ck_Native *native) {

@@ -65,9 +65,6 @@ void ck_native_move(ck_Native *native, int particle, const double *next, const d
 // Moves every particle that is inside a collider out of it, with friction. Nothing without colliders.
 void ck_native_project(ck_Native *native);
 
-// Adds the acceleration by air, [3*n] m/s², of the positions as they are.
-void ck_native_blow(const ck_Native *native, const double *velocity, double *acceleration);
-
 // False where any coordinate has left the finite numbers.
 bool ck_native_is_finite(const ck_Native *native);
 

@@ -5,23 +5,10 @@
 #include "spring_kernel.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-// Adds the acceleration by hinges. Cost: one pass over them.
-static void bend(const ck_Native *native, double *acceleration) {
-    for (int i = 0; i < native->model->hinge_count; i++) {
-        const ck_Hinge *hinge = &native->model->hinges[i];
-        const ck_HingeState state = ck_hinge_state(hinge, native->position);
-        for (int k = 0; k < 4; k++) {
-            const int particle = hinge->particles[k];
-            if (particle >= 0)
-                ck_add_scaled(acceleration + 3 * particle,
-                              -hinge->weights[k] * state.pull * native->inverse_mass[particle], state.vector);
-        }
-    }
-}
 
 // Adds the acceleration by springs. hangs: a constant of the caller, so that springs which also push are not asked.
 static inline void pull(const ck_Native *native, double *acceleration, const bool hangs) {
@@ -53,8 +40,9 @@ static void accelerate(const ck_Native *native, double *acceleration) {
         pull(native, acceleration, true);
     else
         pull(native, acceleration, false);
-    if (model->hinge_count) bend(native, acceleration);
-    if (model->wind.face_count) ck_native_blow(native, velocity, acceleration);
+    if (model->hinge_count) ck_hinges_add_force(model, native->position, 1, native->inverse_mass, acceleration);
+    if (model->wind.face_count)
+        ck_wind_add_force(model, native->position, velocity, native->inverse_mass, acceleration);
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];

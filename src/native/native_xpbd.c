@@ -4,6 +4,7 @@
 #include "projection.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -76,7 +77,7 @@ static void substep(ck_Native *native) {
     if (native->bending) memset(native->bending, 0, 3 * sizeof(double) * (size_t)model->hinge_count);
     if (model->wind.face_count) {
         memset(native->acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
-        ck_native_blow(native, native->velocity, native->acceleration);
+        ck_wind_add_force(model, native->position, native->velocity, native->inverse_mass, native->acceleration);
     }
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;

@@ -30,16 +30,6 @@ typedef struct Newton {
     double *position, *trial; // [3*n]
 } Newton;
 
-static void subtract_hinge_forces(const ck_Model *model, const double *position, double *gradient) {
-    for (int i = 0; i < model->hinge_count; i++) {
-        const ck_Hinge *hinge = &model->hinges[i];
-        const ck_HingeState state = ck_hinge_state(hinge, position);
-        for (int k = 0; k < 4; k++)
-            if (hinge->particles[k] >= 0)
-                ck_add_scaled(gradient + 3 * hinge->particles[k], hinge->weights[k] * state.pull, state.vector);
-    }
-}
-
 // Energy, and its gradient over all coordinates, pinned ones too, where gradient is not NULL.
 static double energy_of(const ck_Model *model, const double *position, double *gradient) {
     double energy = 0;
@@ -56,7 +46,7 @@ static double energy_of(const ck_Model *model, const double *position, double *g
         ck_add_scaled(gradient + 3 * spring->b, spring->stiffness * stretch / length, d);
     }
     energy += ck_hinges_energy(model, position);
-    if (gradient) subtract_hinge_forces(model, position, gradient);
+    if (gradient) ck_hinges_add_force(model, position, -1, NULL, gradient);
     for (int i = 0; i < model->particle_count; i++) {
         double field[3], moved[3];
         if (model->pinned[i]) continue;

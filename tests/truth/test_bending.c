@@ -156,7 +156,7 @@ static void test_forces(void **state) {
         double *at = model->position, *force = calloc((size_t)count, sizeof *force), sum[3] = {0}, turn[3] = {0};
         ck_Random random = ck_random_seed(3);
         for (int k = 0; k < count; k++) at[k] += 0.3 * model->spacing * (2 * ck_random_unit(&random) - 1);
-        ck_hinges_add_force(model, at, force);
+        ck_hinges_add_force(model, at, 1, NULL, force);
         double largest = 0;
         for (int k = 0; k < count; k++) largest = fmax(largest, fabs(force[k]));
         for (int k = 0; k < count; k++) {

@@ -50,7 +50,7 @@ static void test_grid(void **state) {
     fixture_load(&fixture, "name: g\ncloth: {rows: 4, columns: 3, spacing: 0.5, mass: 1}\n"
                            "wind: {velocity: [0, 0, 2], density: 1, drag: 1}\ntime: {duration: 1, step: 1}\n");
     double force[36] = {0}, sum = 0;
-    ck_wind_add_force(&fixture.model, fixture.model.position, fixture.model.velocity, force);
+    ck_wind_add_force(&fixture.model, fixture.model.position, fixture.model.velocity, NULL, force);
     for (int i = 0; i < 12; i++) sum += force[3 * i + 2];
     assert_near("whole", sum, 0.5 * 4 * 1.5 * 1, 1e-12);
     assert_near("corner", force[2], sum / 6 / 4, 1e-12);

@@ -77,10 +77,8 @@ static double cotangent(const double *corner, const double *one, const double *o
 }
 
 static double area_of(const double *a, const double *b, const double *c) {
-    double u[3], v[3], normal[3];
-    ck_subtract(u, b, a);
-    ck_subtract(v, c, a);
-    ck_cross(normal, u, v);
+    double normal[3];
+    ck_triangle_normal(normal, a, b, c);
     return 0.5 * ck_length(normal);
 }
 

@@ -35,10 +35,9 @@ double ck_body_share_area(ck_Model *model, double density) {
     memset(model->mass, 0, sizeof *model->mass * (size_t)model->particle_count);
     for (int i = 0; i < model->triangle_count; i++) {
         const int *corners = model->triangles[i];
-        double one[3], other[3], normal[3];
-        ck_subtract(one, model->position + 3 * corners[1], model->position + 3 * corners[0]);
-        ck_subtract(other, model->position + 3 * corners[2], model->position + 3 * corners[0]);
-        ck_cross(normal, one, other);
+        double normal[3];
+        ck_triangle_normal(normal, model->position + 3 * corners[0], model->position + 3 * corners[1],
+                           model->position + 3 * corners[2]);
         const double area = 0.5 * ck_length(normal);
         whole += area;
         for (int k = 0; k < 3; k++) model->mass[corners[k]] += density * area / 3;
@@ -71,6 +70,13 @@ static void set_grid(ck_Model *model, const ck_SceneMaterial *material, bool is_
                          (is_at_border(i % columns, columns) ? 0.5 : 1);
 }
 
+// Shares the whole mass by the area of faces.
+static void share_mass(ck_Model *model) {
+    double mass = 0;
+    for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
+    ck_body_share_area(model, mass / ck_body_share_area(model, 1));
+}
+
 // Each edge has Eh times the area of its faces over its length's square: of equilateral triangles √3/2·Eh.
 // Source: Van Gelder 1998, Approximate simulation of elastic membranes by triangulated spring meshes.
 static ck_Status set_faces(ck_Model *model, const ck_SceneMaterial *material) {
@@ -88,12 +94,9 @@ static ck_Status set_faces(ck_Model *model, const ck_SceneMaterial *material) {
     }
     for (int i = 0; i < 3 * model->triangle_count; i++) {
         const int *corners = model->triangles[i / 3], a = corners[i % 3], b = corners[(i + 1) % 3];
-        const double *at = model->position, *x = at + 3 * corners[0], *y = at + 3 * corners[1],
-                     *z = at + 3 * corners[2];
-        double one[3], other[3], normal[3];
-        ck_subtract(one, y, x);
-        ck_subtract(other, z, x);
-        ck_cross(normal, one, other);
+        double normal[3];
+        ck_triangle_normal(normal, model->position + 3 * corners[0], model->position + 3 * corners[1],
+                           model->position + 3 * corners[2]);
         for (int s = first[a < b ? a : b]; s >= 0; s = next[s]) {
             ck_Spring *spring = &model->springs[s];
             if ((spring->a == a && spring->b == b) || (spring->a == b && spring->b == a))
@@ -137,9 +140,7 @@ ck_Status ck_model_set_material(ck_Model *model, const ck_Scene *scene, ck_Error
     if (model->columns) {
         set_grid(model, material, is_cross);
     } else {
-        double mass = 0;
-        for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
-        ck_body_share_area(model, mass / ck_body_share_area(model, 1));
+        if (cloth) share_mass(model); // a mesh's is shared already
         status = set_faces(model, material);
     }
     for (int i = 0; i < model->spring_count; i++)

@@ -353,28 +353,25 @@ ck_Status ck_truth_terminal_speed(const ck_Model *model, double time, double *po
     return CK_OK;
 }
 
-// The area of the faces, m², and by how much a particle's share of it is off its share of the mass; NaN where a face
-// does not lie across the direction.
+// The area of the faces, m², and by how much a particle's share of it is off its share of the mass; NaN where they do
+// not all lie across the direction.
 static double area_across(const ck_Model *model, const double *direction, double *off) {
-    const ck_Wind *wind = &model->wind;
-    double *shares = calloc((size_t)model->particle_count, sizeof *shares), area = 0, mass = 0;
+    double *shares = calloc((size_t)model->particle_count, sizeof *shares), mass = 0, across = 0;
     if (!shares) return NAN;
-    for (int i = 0; i < wind->face_count; i++) {
-        const int *corners = wind->faces[i];
-        double one[3], other[3], normal[3];
-        ck_subtract(one, model->position + 3 * corners[1], model->position + 3 * corners[0]);
-        ck_subtract(other, model->position + 3 * corners[2], model->position + 3 * corners[0]);
-        ck_cross(normal, one, other);
-        const double face = 0.5 * ck_length(normal);
-        area += fabs(0.5 * fabs(ck_dot(normal, direction)) - face) > 1e-9 * face ? NAN : face;
-        for (int k = 0; k < 3; k++) shares[corners[k]] += face / 3;
+    const double area = ck_wind_share_area(model, shares);
+    for (int i = 0; i < model->wind.face_count; i++) {
+        const int *corners = model->wind.faces[i];
+        double normal[3];
+        ck_triangle_normal(normal, model->position + 3 * corners[0], model->position + 3 * corners[1],
+                           model->position + 3 * corners[2]);
+        across += 0.5 * fabs(ck_dot(normal, direction));
     }
     for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
     *off = 0;
     for (int i = 0; i < model->particle_count; i++)
         *off = fmax(*off, fabs(shares[i] / area - model->mass[i] / mass) * model->particle_count);
     free(shares);
-    return area;
+    return area - across > 1e-9 * area ? NAN : area;
 }
 
 ck_Status ck_truth_air_fall(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
@@ -392,8 +389,9 @@ ck_Status ck_truth_air_fall(const ck_Model *model, double time, double *position
     if (status) return status;
     for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
     const double terminal = sqrt(2 * mass * g / (model->wind.density * model->wind.drag * area)),
-                 fallen = terminal * terminal / g * log(cosh(g * time / terminal)),
-                 speed = terminal * tanh(g * time / terminal);
+                 times = g * time / terminal,
+                 // log(cosh(x)), without its overflow
+        fallen = terminal * terminal / g * (times + log1p(exp(-2 * times)) - log(2)), speed = terminal * tanh(times);
     start_from(model, position, velocity);
     for (int i = 0; i < model->particle_count; i++) {
         ck_add_scaled(position + 3 * i, fallen, direction);
