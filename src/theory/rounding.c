@@ -8,7 +8,8 @@ double ck_rounding_step(const ck_Model *model, bool is_single) {
     double field[3], farthest = 0;
     ck_model_mean_field(model, field);
     for (int i = 0; i < 3 * model->particle_count; i++) farthest = fmax(farthest, fabs(model->position[i]));
-    const double spacing = farthest * (is_single ? 0x1p-23 : 0x1p-52);
+    // of a power of two and all that is below the next
+    const double spacing = farthest > 0 ? ldexp(is_single ? 0x1p-23 : 0x1p-52, ilogb(farthest)) : 0;
     return ck_length(field) > 0 ? sqrt(spacing / ck_length(field)) : NAN;
 }
 

@@ -7,7 +7,8 @@
 #include <stdbool.h>
 
 // The spacing of numbers at a scene's farthest coordinate over the way that the field moves a point in a step, g·dt²:
-// by that share a velocity read off two positions is wrong, and from 1 on nothing moves. NaN without a field.
+// by that share a velocity read off two positions is wrong, and from ½ on the fall of a step is rounded away. NaN
+// without a field.
 double ck_rounding_share(const ck_Model *model, double dt, bool is_single);
 
 // The step, s, at which that share is 1. NaN without a field.

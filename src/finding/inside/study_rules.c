@@ -6,6 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+// The smallest command that shows what a study found of an engine.
+static void command_of(char *command, size_t size, const char *study, const char *scene, const char *engine) {
+    snprintf(command, size, "clothcheck %s %s --engine %s", study, scene, engine);
+}
+
 // Finer steps that make it worse, as the study of precision found.
 void ck_rule_finest(ck_Findings *findings, const ck_CsvTable *const *tables) {
     const ck_CsvTable *summary = tables[CK_PRECISION_SUMMARY];
@@ -14,19 +19,19 @@ void ck_rule_finest(ck_Findings *findings, const ck_CsvTable *const *tables) {
         if (!is_rounding && !ck_row_is(summary, i, "quantity", "finest_useful_substeps")) continue;
         const char *scene = ck_csv_text_of(summary, i, "scene"), *engine = ck_csv_text_of(summary, i, "engine");
         char command[200];
-        snprintf(command, sizeof command, "clothcheck precision %s --engine %s", scene, engine);
+        command_of(command, sizeof command, "precision", scene, engine);
         ck_findings_add(findings, is_rounding ? "rounding" : "setting", scene, engine, command,
                         "%s on %s: more than %s substeps a frame are no use: %s", engine, scene,
                         ck_csv_text_of(summary, i, "value"), ck_csv_text_of(summary, i, "reason"));
     }
 }
 
-// A point that falls by less than half the spacing of numbers in a step does not move.
+// What a point falls by in a step is rounded away where it is less than half the spacing of numbers.
 static bool is_lost(const ck_CsvTable *table, int row) {
     return ck_csv_number_of(table, row, "rounding") >= 0.5;
 }
 
-// The step from which on a point that is let go does not move: one sentence an engine.
+// The step from which on falling is rounded away: one sentence an engine.
 void ck_rule_spacing(ck_Findings *findings, const ck_CsvTable *const *tables) {
     const ck_CsvTable *table = tables[CK_PRECISION];
     for (int first = 0, said = -1; first < table->row_count; first++) {
@@ -42,11 +47,11 @@ void ck_rule_spacing(ck_Findings *findings, const ck_CsvTable *const *tables) {
         said = first;
         const char *scene = ck_csv_text_of(table, first, "scene"), *engine = ck_csv_text_of(table, first, "engine");
         char command[200];
-        snprintf(command, sizeof command, "clothcheck precision %s --engine %s", scene, engine);
+        command_of(command, sizeof command, "precision", scene, engine);
         ck_findings_add(
             findings, "rounding", scene, engine, command,
             "%s on %s: at %s substeps a frame a step falls by %.2g of the spacing of its numbers, and it is "
-            "%.2g %% off; finer steps move nothing",
+            "%.2g %% off",
             engine, scene, ck_csv_text_of(table, coarsest, "substeps"),
             1 / ck_csv_number_of(table, coarsest, "rounding"), 100 * ck_csv_number_of(table, coarsest, "error"));
     }
@@ -73,7 +78,7 @@ void ck_rule_iterations(ck_Findings *findings, const ck_CsvTable *const *tables)
         if (!(after > 0.8 * before && dearer > CK_FINDING_FACTOR)) continue;
         const char *scene = ck_csv_text_of(table, few, "scene"), *engine = ck_csv_text_of(table, few, "engine");
         char command[200];
-        snprintf(command, sizeof command, "clothcheck precision %s --engine %s", scene, engine);
+        command_of(command, sizeof command, "precision", scene, engine);
         ck_findings_add(
             findings, "setting", scene, engine, command,
             "%s on %s: %s iterations in place of %s, at %s substeps a frame, cost %.2g times as much, and the error is "
@@ -133,7 +138,7 @@ void ck_rule_theory(ck_Findings *findings, const ck_CsvTable *const *tables) {
         if (!is_critical(table, i) || !(ratio > CK_FINDING_FACTOR || ratio < 1 / CK_FINDING_FACTOR)) continue;
         const char *scene = ck_csv_text_of(table, i, "scene"), *engine = ck_csv_text_of(table, i, "engine");
         char command[200];
-        snprintf(command, sizeof command, "clothcheck stability %s --engine %s", scene, engine);
+        command_of(command, sizeof command, "stability", scene, engine);
         ck_findings_add(findings, "breakdown", scene, engine, command,
                         "%s on %s: its longest stable step is %.3g ms, %.2g of that of its theory", engine, scene,
                         1e3 * ck_csv_number_of(table, i, "critical_step_s"), ratio);
