@@ -2,6 +2,7 @@
 
 #include "names.h"
 #include "runner.h"
+#include "start.h"
 #include "statistics.h"
 
 #include <math.h>
@@ -47,7 +48,7 @@ ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Err
     *comparison = (ck_Comparison){.path = path};
     ck_Status status = ck_scene_load(&comparison->scene, path, error);
     if (!status) status = ck_engines_check(&comparison->scene, error);
-    if (!status) status = ck_model_build(&comparison->model, &comparison->scene, error);
+    if (!status) status = ck_start_build(&comparison->model, &comparison->scene, error);
     if (!status) status = check_measure(comparison, error);
     if (status) return status;
     ck_Error why = {0};

@@ -85,6 +85,21 @@ static ck_Status set_pins(ck_Model *model, const ck_Scene *scene, ck_Error *erro
     return status;
 }
 
+static ck_Status set_start(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const char *start = scene->file->start;
+    if (!start) return CK_OK;
+    if (strcmp(start, "equilibrium"))
+        return ck_scene_fail(scene, "start", error,
+                             "start is %s; it must be equilibrium, or be left out: then the body starts as given",
+                             start);
+    if (!model->pin_count)
+        return ck_scene_fail(
+            scene, "start", error,
+            "start equilibrium needs pins: without them the body falls for ever; release lets them go");
+    model->starts_settled = true;
+    return CK_OK;
+}
+
 static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
     const ck_SceneRelease *from = &scene->file->release[index];
     ck_Release *release = &model->releases[model->release_count++];
@@ -273,6 +288,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (!status) status = ck_model_build_hinges(model, scene, error);
     if (!status) status = ck_model_set_wind(model, scene, error);
     if (!status) status = set_pins(model, scene, error);
+    if (!status) status = set_start(model, scene, error);
     if (!status) status = set_releases(model, scene, error);
     if (!status) status = set_colliders(model, scene, error);
     if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);

@@ -91,12 +91,13 @@ typedef struct ck_Model {
     char *name;
     ck_Body body;
     int particle_count;
-    int columns;      // of a cloth: particle = row*columns + column; else 0
-    double *position; // [3*n] m at the start
-    double *velocity; // [3*n] m/s at the start, 0 where pinned
-    double *mass;     // [n] kg
-    bool *pinned;     // [n] at the start
-    bool *released;   // [n] at some time
+    int columns;         // of a cloth: particle = row*columns + column; else 0
+    double *position;    // [3*n] m at the start
+    double *velocity;    // [3*n] m/s at the start, 0 where pinned
+    double *mass;        // [n] kg
+    bool *pinned;        // [n] at the start
+    bool *released;      // [n] at some time
+    bool starts_settled; // the scene starts where the body comes to rest: see truth/start.h
     int pin_count;
     ck_Spring *springs;
     int spring_count;

@@ -1,5 +1,6 @@
 #include "refine.h"
 
+#include "start.h"
 #include "trial.h"
 
 #include <math.h>
@@ -39,7 +40,7 @@ ck_Status ck_refine_create(ck_Refine *refine, const ck_Comparison *comparison, c
         ck_scene_resize(resized, file, ck_refine_shares[level]);
         const ck_Scene scene = {.file = &resized->file, .document = comparison->scene.document};
         refine->model_count++;
-        status = ck_model_build(&refine->models[level], &scene, error);
+        status = ck_start_build(&refine->models[level], &scene, error);
     }
     return status;
 }

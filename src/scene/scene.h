@@ -155,6 +155,7 @@ typedef struct ck_SceneFile {
     char **pins;
     uint32_t pins_count;
     ck_SceneNoise *noise;
+    char *start; // equilibrium: where it comes to rest; NULL: as it is given
     double *gravity, *force, *velocity; // [3] m/s², N on each particle, m/s; NULL: none
     double drag;                        // 1/s
     ck_SceneCollider *colliders;

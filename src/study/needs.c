@@ -1,6 +1,7 @@
 #include "needs.h"
 
 #include "resize.h"
+#include "start.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -290,7 +291,7 @@ static ck_Status run(const void *context, int index, ck_JournalRow *row, ck_Erro
     ck_Model model = {0};
     ck_Measurement without;
     ck_Run run = {0};
-    ck_Status status = ck_model_build(&model, &scene, error);
+    ck_Status status = ck_start_build(&model, &scene, error);
     const ck_Settings wanted = needs->given;
     const ck_Reference none = {.is_static = needs->comparison->truth.reference.is_static};
     if (!status)

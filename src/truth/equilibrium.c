@@ -9,6 +9,7 @@
 #include "statistics.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "wind.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -244,14 +245,19 @@ static double *about_first(const ck_Model *model, const double *position) {
     return moved;
 }
 
+static ck_Status check(const ck_Model *model, ck_Error *error) {
+    const unsigned beyond = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE;
+    if (!(model->terms & beyond) && model->pin_count && ck_stability_load(model) > 0 && !ck_wind_blows(model))
+        return CK_OK;
+    return ck_fail(error, CK_REFUSED,
+                   "%s: equilibrium needs pins that stay, a load, springs that stretch, still air and no colliders",
+                   model->name);
+}
+
 ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
                                ck_Error *error) {
     *equilibrium = (ck_Equilibrium){0};
-    if ((model->terms & (CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)) || !model->pin_count ||
-        !(ck_stability_load(model) > 0))
-        return ck_fail(error, CK_REFUSED,
-                       "%s: equilibrium needs pins that stay, a load, springs that stretch, and no colliders",
-                       model->name);
+    if (check(model, error)) return CK_REFUSED;
     Newton newton = {0};
     ck_Model near = *model;
     near.position = about_first(model, model->position);
@@ -393,6 +399,7 @@ static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, doub
 ck_Status ck_equilibrium_release(ck_Equilibrium *equilibrium, const ck_Model *model, double nudge, uint64_t seed,
                                  ck_Error *error) {
     *equilibrium = (ck_Equilibrium){0};
+    if (check(model, error)) return CK_REFUSED;
     double *position = malloc(3 * sizeof(double) * (size_t)model->particle_count);
     if (!position) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
     ck_Status status = settle(model, nudge, seed, position, error);

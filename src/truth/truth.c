@@ -50,6 +50,8 @@ static const ck_TruthForm forms[] = {
      .at = ck_truth_longitudinal_modes},
     {"taut_string", CLOSED, "beaded string: w_j = 2*sqrt(T/(m*d))*sin(j*pi/(2*(N+1)))", false,
      .at = ck_truth_taut_string, .is_linear = true, .off = ck_truth_taut_string_off},
+    {"slinky", CLOSED, "free-free chain: w_j = 2*sqrt(k/m)*sin(j*pi/(2*N)) about a centre that falls freely", false,
+     .terms = CK_TERM_RELEASE, .at = ck_truth_slinky},
     {"hanging_chain_modes", CLOSED, "w^2 = (g/l)*zeros of the Laguerre polynomial L_N; shapes L_i", false,
      .at = ck_truth_hanging_chain, .is_linear = true, .off = ck_truth_hanging_chain_off},
     {"pendulum", CLOSED, "sin(theta/2) = sin(theta_0/2)*cd(sqrt(g/L)*t); period 2*pi*sqrt(L/g)/AGM(1, cos(theta_0/2))",

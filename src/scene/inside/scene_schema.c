@@ -249,6 +249,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING_PTR("wind", OPTIONAL, ck_SceneFile, wind, wind_fields),
     CYAML_FIELD_MAPPING_PTR("bending", OPTIONAL, ck_SceneFile, bending, bending_fields),
     CYAML_FIELD_SEQUENCE("pins", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, pins, &text, 0, CYAML_UNLIMITED),
+    CYAML_FIELD_STRING_PTR("start", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, start, 1, 20),
     CYAML_FIELD_MAPPING_PTR("noise", OPTIONAL, ck_SceneFile, noise, noise_fields),
     CYAML_FIELD_SEQUENCE_FIXED("gravity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, gravity, &number, 3),
     CYAML_FIELD_SEQUENCE_FIXED("force", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, force, &number, 3),

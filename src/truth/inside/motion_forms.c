@@ -147,6 +147,92 @@ double ck_truth_taut_string_off(const ck_Model *model) {
     return 0.5 * slope * slope + share * speed * model->duration / model->size;
 }
 
+// A chain without pins in its modes cos((i + ½)·j·π/N), each from where it is at the start, about its falling centre.
+static void add_free_mode(const ck_Model *model, int j, const double *along, double time, double *x, double *v) {
+    const int count = model->particle_count;
+    const ck_Spring *spring = &model->springs[0];
+    double start = 0, norm = 0, q, rate;
+    double frequency = 2 * sqrt(spring->stiffness / model->mass[0]) * sin(j * pi / (2 * count));
+    for (int i = 0; i < count; i++) {
+        double shape = cos((i + 0.5) * j * pi / count), from_first[3];
+        ck_subtract(from_first, model->position + 3 * i, model->position);
+        start += shape * (ck_dot(from_first, along) - i * spring->rest);
+        norm += shape * shape;
+    }
+    // let go: the unit response from q = 1 at rest is q' + 2·decay·q of that from a unit speed
+    const double decay = 0.5 * spring->damping / spring->stiffness * frequency * frequency;
+    ring(&(Mode){.frequency = frequency, .decay = decay}, 1, time, &q, &rate);
+    for (int i = 0; i < count; i++) {
+        double share = start / norm * cos((i + 0.5) * j * pi / count);
+        ck_add_scaled(x + 3 * i, share * (rate + 2 * decay * q), along);
+        ck_add_scaled(v + 3 * i, -share * frequency * frequency * q, along);
+    }
+}
+
+// A rope that is straight, and of equal parts: along, unit, and centre, the mean of what each is past its rest, m.
+static bool is_straight(const ck_Model *model, double *along, double *centre) {
+    const int count = model->particle_count;
+    const ck_Spring *first = &model->springs[0];
+    if (!ck_shape_is_chain(model)) return false;
+    ck_subtract(along, model->position + 3 * (count - 1), model->position);
+    const double length = ck_length(along);
+    for (int axis = 0; axis < 3; axis++) along[axis] /= length;
+    *centre = 0;
+    bool straight = length > 0;
+    for (int i = 0; i < count && straight; i++) {
+        double from_first[3];
+        ck_subtract(from_first, model->position + 3 * i, model->position);
+        const double far = ck_dot(from_first, along);
+        *centre += (far - i * first->rest) / count;
+        straight = fabs(ck_length(from_first) - far) <= 1e-12 * length;
+    }
+    for (int i = 1; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        straight &= fabs(spring->rest / first->rest - 1) < 1e-12 && spring->damping == first->damping;
+        straight &= fabs(spring->stiffness / first->stiffness - 1) < 1e-12;
+    }
+    return straight;
+}
+
+static bool is_let_go_whole(const ck_Model *model) {
+    for (int i = 0; i < model->particle_count; i++)
+        if (ck_model_is_held(model, i)) return false;
+    for (int i = 0; i < model->release_count; i++)
+        if (model->releases[i].frame > 0) return false;
+    return true;
+}
+
+ck_Status ck_truth_slinky(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
+    const unsigned others = CK_TERM_RIGID | CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE;
+    const int count = model->particle_count;
+    double along[3], centre = 0, field[3];
+    bool fits = is_straight(model, along, &centre) && count <= MAX_MODES && has_equal_masses(model) &&
+                is_let_go_whole(model) && !(model->terms & others);
+    ck_Status status = ck_truth_need(fits, model, error,
+                                     "a straight rope of at most 1000 equal springs and masses, let go whole at the "
+                                     "start, and no other force than gravity and damping along springs");
+    if (status) return status;
+    ck_model_field(model, 0, field);
+    for (int i = 0; i < count; i++) {
+        memcpy(position + 3 * i, model->position, 3 * sizeof(double));
+        ck_add_scaled(position + 3 * i, centre + i * model->springs[0].rest, along);
+        ck_add_scaled(position + 3 * i, 0.5 * time * time, field);
+        memset(velocity + 3 * i, 0, 3 * sizeof(double));
+        ck_add_scaled(velocity + 3 * i, time, field);
+    }
+    for (int j = 1; j < count; j++) add_free_mode(model, j, along, time, position, velocity);
+    for (int i = 1; i < count; i++) {
+        double side[3];
+        ck_subtract(side, position + 3 * i, position + 3 * i - 3);
+        if (ck_dot(side, along) <= 0)
+            return ck_fail(error, CK_BAD_INPUT,
+                           "%s: truth slinky ends where coils meet, here before %.3g s; stiffen it, or end the scene "
+                           "sooner",
+                           model->name, time);
+    }
+    return CK_OK;
+}
+
 // Laguerre polynomial by its three-term recurrence.
 static double laguerre(int degree, double x) {
     double before = 1, now = 1 - x;

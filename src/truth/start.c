@@ -1,0 +1,41 @@
+#include "start.h"
+
+#include "collider.h"
+#include "equilibrium.h"
+
+#include <string.h>
+
+// Seconds of falling at most, in frames of the scene; what is not at rest then is left to Newton.
+#define MOST_FRAMES 20000
+
+static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    for (int i = 0; i < model->particle_count; i++)
+        for (int j = 0; j < model->collider_count && !ck_model_is_held(model, i); j++) {
+            double normal[3], gap = ck_collider_gap(&model->colliders[j], model->position + 3 * i, normal);
+            if (gap < -1e-9 * model->spacing)
+                return ck_scene_fail(scene, "start", error,
+                                     "particle %d would rest %g m inside colliders[%d], which a start at equilibrium "
+                                     "knows nothing of; move the collider, or let the body fall on it",
+                                     i, -gap, j);
+        }
+    return CK_OK;
+}
+
+static ck_Status settle(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    ck_Model held = *model;
+    held.collider_count = held.release_count = 0;
+    held.terms &= ~(unsigned)(CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE);
+    held.frame_count = MOST_FRAMES;
+    ck_Equilibrium equilibrium;
+    ck_Error why = {0};
+    ck_Status status = ck_equilibrium_release(&equilibrium, &held, 0, 0, &why);
+    if (!status) memcpy(model->position, equilibrium.position, 3 * sizeof(double) * (size_t)model->particle_count);
+    ck_equilibrium_free(&equilibrium);
+    if (status == CK_REFUSED) return ck_scene_fail(scene, "start", error, "%s", why.message);
+    return status ? ck_fail(error, status, "%s", why.message) : check_outside(model, scene, error);
+}
+
+ck_Status ck_start_build(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    ck_Status status = ck_model_build(model, scene, error);
+    return status || !model->starts_settled ? status : settle(model, scene, error);
+}
