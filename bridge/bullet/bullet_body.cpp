@@ -1,5 +1,6 @@
 #include "bullet_body.hpp"
 
+#include "path.h"
 #include "sweep_order.h"
 #include "vector.h"
 
@@ -21,7 +22,7 @@ void ck_BulletModel::release(const double *at, const double *speed, int particle
         now.position[i] = at[i] / scaled.length;
         now.velocity[i] = speed[i] / scaled.length;
     }
-    std::fill_n(now.velocity + 3 * particle, 3, 0.0);
+    if (!ck_driven_find(&now, particle, 0)) std::fill_n(now.velocity + 3 * particle, 3, 0.0);
     now.pinned[particle] = false;
 }
 

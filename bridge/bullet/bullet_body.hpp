@@ -29,7 +29,8 @@ class ck_BulletModel {
     double length() const {
         return scaled.length;
     }
-    // Goes on from that state, [3*n] m and m/s of the scene, with one pin less, at rest.
+    // Goes on from that state, [3*n] m and m/s of the scene, with one pin less: at rest, or with
+    // the speed that it is moved with.
     void release(const double *at, const double *speed, int particle);
 
   private:

@@ -2,6 +2,7 @@
 // symplectic Euler with implicit damping.
 #include "bullet_body.hpp"
 #include "bullet_contact.hpp"
+#include "bullet_drive.hpp"
 #include "bullet_springs.hpp"
 #include "collider.h"
 #include "engine.h"
@@ -115,6 +116,7 @@ struct DeformableState {
     ck_BulletModel scene;
     ck_Settings used;
     bool is_implicit;
+    uint32_t frame = 0;
     std::unique_ptr<Deformable> now; // NULL: there was no memory for it
     DeformableState(const ck_Model *model, const ck_Settings &settings, bool implicit)
         : scene(model), used(settings), is_implicit(implicit) {}
@@ -255,7 +257,14 @@ ck_StepResult step(void *out) {
     Deformable &state = *all.now;
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
         state.colliders.follow(*state.world, state.body);
-        for (uint32_t i = 0; i < state.body.substeps; i++) state.world->step_once(state.body.dt);
+        const ck_BulletBody &body = state.body;
+        const double start = all.frame++ * body.model->step;
+        for (uint32_t i = 0; i < body.substeps; i++) {
+            ck_bullet_drive(body.model, start + (i + 1) * body.dt, body.dt, [&](int particle) -> btSoftBody::Node & {
+                return body.soft->m_nodes[body.node_of_particle[particle]];
+            });
+            state.world->step_once(body.dt);
+        }
         return CK_OK;
     });
     if (status) return CK_STEP_NO_MEMORY;
@@ -312,7 +321,7 @@ ck_Status code_explicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Set
 
 const unsigned terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
                        CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING |
-                       CK_TERM_WIND;
+                       CK_TERM_WIND | CK_TERM_MOVES;
 
 const ck_Setting implicit_settings[] = {
     {.name = "substeps",

@@ -3,6 +3,7 @@
 // Without colliders the world around it has nothing to do, and only its cost and its float time step would be added:
 // the body is stepped by the same calls that the world would make.
 #include "bullet_contact.hpp"
+#include "bullet_drive.hpp"
 #include "collider.h"
 #include "engine.h"
 #include "sweep_order.h"
@@ -90,6 +91,7 @@ enum { OWN_DAMPING, OWN_REORDERED };
 struct ClassicState {
     ck_BulletModel scene;
     ck_Settings used;
+    uint32_t frame = 0;
     std::unique_ptr<Classic> now; // NULL: there was no memory for it
     ClassicState(const ck_Model *model, const ck_Settings &settings) : scene(model), used(settings) {}
 };
@@ -315,8 +317,12 @@ void prepare_links(Classic &state) {
                          corrects ? &hooke : nullptr);
 }
 
-void step_once(Classic &state) {
+//   end  s, of the step
+void step_once(Classic &state, double end) {
     btSoftBody &soft = *state.body.soft;
+    ck_bullet_drive(state.body.model, end, state.body.dt, [&](int particle) -> btSoftBody::Node & {
+        return soft.m_nodes[state.body.node_of_particle[particle]];
+    });
     prepare_links(state);
     if (state.outer && state.outer->is_there()) {
         state.outer->update(&btSoftBody::Node::m_x);
@@ -339,7 +345,8 @@ ck_StepResult step(void *out) {
     Classic &state = *all.now;
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
         if (state.around) state.around->colliders.follow(state.around->world, state.body);
-        for (uint32_t i = 0; i < state.body.substeps; i++) step_once(state);
+        const double start = all.frame++ * state.body.model->step;
+        for (uint32_t i = 0; i < state.body.substeps; i++) step_once(state, start + (i + 1) * state.body.dt);
         return CK_OK;
     });
     if (status) return CK_STEP_NO_MEMORY;
@@ -444,7 +451,8 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .version = ck_bullet_version,
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND,
+             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |
+             CK_TERM_MOVES,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,

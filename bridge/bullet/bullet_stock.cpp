@@ -1,5 +1,6 @@
 // Bullet's classic soft body as its demos and documentation use it: nothing is corrected. Beside bullet-pbd it shows
 // what the corrections buy, and what games that ship it get.
+#include "bullet_drive.hpp"
 #include "bullet_guard.hpp"
 #include "collider.h"
 #include "engine.h"
@@ -27,6 +28,7 @@ struct Stock {
     ck_Model model; // the caller's, but for its pins
     ck_Settings used;
     btScalar fixed_step; // s
+    uint64_t done = 0;   // steps
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     std::unique_ptr<btSoftBody> soft;
@@ -153,6 +155,14 @@ btScalar fixed_step_of(btScalar step, uint32_t substeps) {
     return fixed;
 }
 
+// Before each step of stepSimulation.
+void drive(btDynamicsWorld *world, btScalar dt) {
+    Stock &stock = *static_cast<Stock *>(world->getWorldUserInfo());
+    const double step = stock.model.step / stock.used.substeps;
+    ck_bullet_drive(&stock.model, static_cast<double>(++stock.done) * step, dt,
+                    [&](int particle) -> btSoftBody::Node & { return stock.soft->m_nodes[particle]; });
+}
+
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                  ck_Error *error) {
     return ck_bullet_guarded(error, [&] {
@@ -170,6 +180,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         info.m_sparsesdf.Initialize();
         add_soft_body(*stock);
         add_colliders(*stock);
+        if (model->driven_count) stock->world.setInternalTickCallback(drive, stock.get(), true);
         *out = stock.release();
         return CK_OK;
     });
@@ -201,7 +212,7 @@ void read_state(const void *state, double *position, double *velocity) {
 void release(void *state, int particle) {
     Stock &stock = *static_cast<Stock *>(state);
     stock.soft->setMass(particle, stock.model.mass[particle]);
-    stock.soft->m_nodes[particle].m_v = btVector3(0, 0, 0);
+    if (!ck_driven_find(&stock.model, particle, 0)) stock.soft->m_nodes[particle].m_v = btVector3(0, 0, 0);
 }
 
 const char *remark(const void *state) {
@@ -274,7 +285,7 @@ extern "C" const ck_Engine ck_bullet_stock = {
     .version = ck_bullet_version,
     .method = CK_METHOD_UNKNOWN,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE,
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .is_stock = true,

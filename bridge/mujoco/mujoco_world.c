@@ -2,6 +2,7 @@
 #include "engine.h"
 #include "hinges.h"
 #include "mujoco_xml.h"
+#include "path.h"
 #include "scaled_model.h"
 #include "time_scale.h"
 #include "vector.h"
@@ -29,7 +30,8 @@ typedef struct MujocoWorld {
     ck_Settings used;
     mjModel *model;
     mjData *data;
-    int *body;     // [particle_count] of each particle; 0, the world, where it is pinned
+    uint64_t done; // substeps
+    int *body;     // [particle_count] of each particle; 0, the world, where it is pinned and stays
     double *outer; // [3][3*particle_count] places, speeds and forces of hinges and air; NULL without
 } MujocoWorld;
 
@@ -155,7 +157,8 @@ static ck_Status load(MujocoWorld *world, ck_Error *error) {
     for (int i = 0; i < model->particle_count; i++) {
         char name[20];
         snprintf(name, sizeof name, "b%d", i);
-        world->body[i] = model->pinned[i] ? 0 : mj_name2id(world->model, mjOBJ_BODY, name);
+        const bool stays = model->pinned[i] && !ck_driven_find(model, i, 0);
+        world->body[i] = stays ? 0 : mj_name2id(world->model, mjOBJ_BODY, name);
         if (!world->body[i]) continue;
         const int joint = world->model->body_dofadr[world->body[i]];
         for (int axis = 0; axis < 3; axis++) {
@@ -224,15 +227,38 @@ static void add_outer(MujocoWorld *world) {
         if (world->body[i / 3]) world->data->xfrc_applied[6 * (size_t)world->body[i / 3] + i % 3] = force[i];
 }
 
+// Pins that move, with the speed that dampers see.
+//   side  of a jump of that speed, as ck_path_at has it
+static void drive(MujocoWorld *world, int side) {
+    const ck_Model *model = &world->scaled.model;
+    const double now = (double)world->done * model->step / world->used.substeps;
+    for (int i = 0; i < model->driven_count; i++) {
+        const ck_Driven *driven = &model->driven[i];
+        if (!ck_driven_holds(model, driven, now)) continue;
+        const int joint = world->model->body_dofadr[world->body[driven->particle]];
+        const double *start = model->position + 3 * driven->particle;
+        double moved[3], at[3], v[3], a[3];
+        ck_driven_at(driven, now, at);
+        ck_path_at(driven->path, now, side, moved, v, a);
+        for (int axis = 0; axis < 3; axis++) {
+            world->data->qpos[joint + axis] = at[axis] - start[axis];
+            world->data->qvel[joint + axis] = v[axis];
+        }
+    }
+}
+
 static ck_StepResult step(void *state) {
     MujocoWorld *world = state;
     if (!world->data) return CK_STEP_NO_MEMORY;
     for (uint32_t i = 0; i < world->used.substeps; i++) {
+        drive(world, 1);
         if (world->outer) add_outer(world);
         mj_step(world->model, world->data);
+        world->done++;
         // it would begin anew from the start, and say nothing
         if (has_left(world->data)) return CK_STEP_DIVERGED;
     }
+    drive(world, -1);
     return CK_STEP_OK;
 }
 
@@ -254,8 +280,8 @@ static void release(void *state, int particle) {
         memcpy(model->velocity, now + count, count * sizeof *now);
     }
     free(now);
+    if (!ck_driven_find(model, particle, 0)) memset(model->velocity + 3 * particle, 0, 3 * sizeof(double));
     model->pinned[particle] = false;
-    memset(model->velocity + 3 * particle, 0, 3 * sizeof(double));
     if (!now || load(world, NULL)) unload(world);
 }
 
@@ -299,7 +325,7 @@ const ck_Engine ck_mujoco = {
     .version = version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND,
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES,
     .settings = settings,
     .order = 1,
     .create = create,

@@ -1,5 +1,7 @@
 #include "mujoco_xml.h"
 
+#include "path.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,7 +71,8 @@ static void write_collider(FILE *out, const ck_Collider *collider, const ck_Mujo
 
 static void write_particle(FILE *out, const ck_Model *model, int particle, const ck_MujocoOptions *options) {
     const double *at = model->position + 3 * particle;
-    if (model->pinned[particle]) {
+    // one that is moved is put where it belongs after every step
+    if (model->pinned[particle] && !ck_driven_find(model, particle, 0)) {
         fprintf(out, "<site name=\"s%d\" pos=\"%.17g %.17g %.17g\"/>\n", particle, at[0], at[1], at[2]);
         return;
     }

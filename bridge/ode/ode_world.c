@@ -2,6 +2,7 @@
 #include "engine.h"
 #include "hinges.h"
 #include "ode_contact.h"
+#include "path.h"
 #include "scaled_model.h"
 #include "shape.h"
 #include "time_scale.h"
@@ -25,7 +26,8 @@ typedef struct OdeWorld {
     dBodyID *bodies; // [particle_count]
     double *outer;   // [3][3*particle_count] places, speeds and forces of hinges and air; NULL without
     ck_OdeContacts *contacts;
-    double dt; // s, one substep
+    double dt;     // s, one substep
+    uint64_t done; // substeps
     uint32_t substeps;
     bool quick;
     ck_Settings used;
@@ -198,7 +200,6 @@ static void release(void *state, int particle) {
             add_joint(ode, spring);
     }
     dBodySetDynamic(body);
-    dBodySetLinearVel(body, 0, 0, 0);
     dBodySetLinearDamping(body, ode->model->drag * ode->dt);
 }
 
@@ -278,6 +279,20 @@ static void add_outer(OdeWorld *ode) {
             dBodyAddForce(ode->bodies[i / 3], force[i], force[i + 1], force[i + 2]);
 }
 
+// ODE moves a kinematic body by the speed that it is given.
+static void drive(OdeWorld *ode) {
+    const double end = (double)++ode->done * ode->dt;
+    for (int i = 0; i < ode->model->driven_count; i++) {
+        const ck_Driven *driven = &ode->model->driven[i];
+        const dBodyID body = ode->bodies[driven->particle];
+        double at[3];
+        if (!ck_driven_holds(ode->model, driven, end)) continue;
+        ck_driven_at(driven, end, at);
+        ck_add_scaled(at, -1, dBodyGetPosition(body));
+        dBodySetLinearVel(body, at[0] / ode->dt, at[1] / ode->dt, at[2] / ode->dt);
+    }
+}
+
 static ck_StepResult step(void *state) {
     OdeWorld *ode = state;
     const double *force = ode->model->force;
@@ -286,6 +301,7 @@ static ck_StepResult step(void *state) {
         if (!is_safe(ode)) return CK_STEP_DIVERGED;
         for (int j = 0; j < ode->model->particle_count && (ode->model->terms & CK_TERM_FORCE); j++)
             if (!dBodyIsKinematic(ode->bodies[j])) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
+        drive(ode);
         if (ode->outer) add_outer(ode);
         if (ode->contacts) ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies);
         // QuickStep shuffles its rows from a seed that is global to the process
@@ -343,7 +359,8 @@ static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const c
 
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
-     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND)
+     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |            \
+     CK_TERM_MOVES)
 
 static const ck_Setting quick_settings[] = {
     {.name = "substeps",

@@ -216,9 +216,12 @@ ck_Status ck_code_write(FILE *out, const ck_Engine *engine, const ck_Model *mode
     ck_Code code = {0};
     ck_ScaledModel scaled = {0};
     if (!engine->code) return ck_fail(error, CK_BAD_INPUT, "%s has no program to paste", engine->name);
-    if (model->terms & (CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY))
+    const unsigned beyond =
+        CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
+    if (model->terms & beyond)
         return ck_fail(error, CK_BAD_INPUT,
-                       "%s: the programs to paste know no bending, no wind and no slack springs; leave them out",
+                       "%s: the programs to paste know no bending, no wind, no slack springs and nothing that moves; "
+                       "leave them out",
                        model->name);
     ck_Status status = ck_scaled_model_create(&scaled, model);
     if (status) return ck_fail(error, status, "out of memory");

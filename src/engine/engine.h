@@ -71,7 +71,7 @@ typedef struct ck_Engine {
     ck_StepResult (*step)(void *state);
     // Position and velocity at the same time, in the model's particle order: [3*n] m, [3*n] m/s.
     void (*read)(const void *state, double *position, double *velocity);
-    // Lets a pinned particle go, at rest. NULL where the engine cannot.
+    // Lets a pinned particle go, at rest, or with the speed that it is moved with. NULL where the engine cannot.
     void (*release)(void *state, int particle);
     // The mean force of all colliders on the body over the last frame, [3] N. NULL where the engine does not tell.
     void (*contact)(const void *state, double *force);

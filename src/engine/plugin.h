@@ -16,7 +16,7 @@ extern "C" {
 
 // Raised where the interface changes.
 #ifndef CK_PLUGIN_VERSION
-#define CK_PLUGIN_VERSION 2
+#define CK_PLUGIN_VERSION 3
 #endif
 
 typedef struct ck_Plugin {

@@ -29,6 +29,11 @@ static void scale_lengths(ck_Model *model, double unit) {
         divide(model->hinges[i].weights, 4, 1 / unit);
         divide(&model->hinges[i].stiffness, 1, unit * unit);
     }
+    for (int i = 0; i < model->driven_count; i++) divide(model->driven[i].start, 3, unit);
+    for (int i = 0; i < model->path_count; i++) {
+        divide(model->paths[i].vector, 3, unit);
+        for (int j = 0; j < model->paths[i].point_count; j++) divide(model->paths[i].points[j] + 1, 3, unit);
+    }
     for (int i = 0; i < model->collider_count; i++) {
         divide(model->colliders[i].point, 3, unit);
         divide(&model->colliders[i].radius, 1, unit);
@@ -61,6 +66,24 @@ static double mass_unit(const ck_Model *model) {
     return power_below(total / model->particle_count);
 }
 
+// Paths and their points, and what goes along them. False without memory.
+static bool copy_paths(ck_Model *own, const ck_Model *model) {
+    bool has_all = true;
+    own->paths = copy_of(model->paths, (size_t)model->path_count, sizeof(ck_Path));
+    own->driven = copy_of(model->driven, (size_t)model->driven_count, sizeof(ck_Driven));
+    for (int i = 0; i < model->path_count && own->paths; i++) {
+        const ck_Path *from = &model->paths[i];
+        own->paths[i].points = copy_of(from->points, (size_t)from->point_count, sizeof *from->points);
+        has_all &= own->paths[i].points != NULL;
+    }
+    if (!own->paths || !own->driven) return false;
+    for (int i = 0; i < model->driven_count; i++)
+        own->driven[i].path = own->paths + (model->driven[i].path - model->paths);
+    for (int i = 0; i < model->collider_count && own->colliders; i++)
+        if (model->colliders[i].path) own->colliders[i].path = own->paths + (model->colliders[i].path - model->paths);
+    return has_all;
+}
+
 ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) {
     const size_t particles = (size_t)model->particle_count;
     *scaled = (ck_ScaledModel){.model = *model};
@@ -72,7 +95,8 @@ ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) 
     own->springs = copy_of(model->springs, (size_t)model->spring_count, sizeof(ck_Spring));
     own->hinges = copy_of(model->hinges, (size_t)model->hinge_count, sizeof(ck_Hinge));
     own->colliders = copy_of(model->colliders, (size_t)model->collider_count, sizeof(ck_Collider));
-    if (!own->position || !own->velocity || !own->mass || !own->pinned || !own->springs || !own->hinges ||
+    const bool has_paths = copy_paths(own, model);
+    if (!has_paths || !own->position || !own->velocity || !own->mass || !own->pinned || !own->springs || !own->hinges ||
         !own->colliders) {
         ck_scaled_model_free(scaled);
         return CK_NO_MEMORY;
@@ -93,6 +117,9 @@ void ck_scaled_model_ledger(ck_Ledger *ledger, const ck_Model *model) {
 }
 
 void ck_scaled_model_free(ck_ScaledModel *scaled) {
+    for (int i = 0; i < scaled->model.path_count && scaled->model.paths; i++) free(scaled->model.paths[i].points);
+    free(scaled->model.paths);
+    free(scaled->model.driven);
     free(scaled->model.position);
     free(scaled->model.velocity);
     free(scaled->model.mass);

@@ -71,6 +71,27 @@ static json_t *hinge_of(const ck_Hinge *hinge) {
     return NULL;
 }
 
+static json_t *path_of(const ck_Path *path) {
+    json_t *out, *points = path->kind == CK_PATH_POINTS ? json_array() : NULL;
+    bool is_whole = true;
+    for (int i = 0; i < path->point_count && points; i++) {
+        const double *p = path->points[i];
+        is_whole &= !json_array_append_new(points, json_pack("[f, f, f, f]", p[0], p[1], p[2], p[3]));
+    }
+    if (path->kind == CK_PATH_POINTS)
+        out = json_pack("{s:o}", "points", points);
+    else if (path->kind == CK_PATH_SINE)
+        out = json_pack("{s:o, s:f, s:f}", "amplitude", vector_of(path->vector), "frequency", path->frequency, "from",
+                        path->from);
+    else
+        out = json_pack("{s:o, s:f}", "velocity", vector_of(path->vector), "from", path->from);
+    if (out && path->kind != CK_PATH_POINTS && isfinite(path->to))
+        is_whole &= !json_object_set_new(out, "to", json_real(path->to));
+    if (is_whole) return out;
+    json_decref(out);
+    return NULL;
+}
+
 static json_t *collider_of(const ck_Collider *collider) {
     if (collider->shape == CK_SPHERE)
         return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(collider->point), "radius",
@@ -117,6 +138,24 @@ static void put_releases(Writer *writer, const ck_Model *model) {
     }
 }
 
+static void put_moves(Writer *writer, const ck_Model *model) {
+    bool is_first = true;
+    for (int i = 0; i < model->path_count; i++) {
+        json_t *pins = json_array();
+        for (int k = 0; k < model->driven_count; k++)
+            if (model->driven[k].path == &model->paths[i])
+                writer->has_failed |= json_array_append_new(pins, json_integer(model->driven[k].particle)) != 0;
+        if (json_array_size(pins)) {
+            put(writer, is_first ? ",\n\"moves\": [\n  " : ",\n  ",
+                json_pack("{s:o, s:o}", "pins", pins, "path", path_of(&model->paths[i])), "");
+            is_first = false;
+        } else {
+            json_decref(pins);
+        }
+    }
+    if (!is_first) fprintf(writer->out, "]");
+}
+
 // A closed form is of a rope or a cloth by that name, which a network is not.
 static bool truth_goes_along(const ck_Model *model) {
     static const char *const general[] = {"equilibrium", "trajectory", "rest"};
@@ -137,6 +176,7 @@ static void put_fields(Writer *writer, const ck_Model *model) {
             json_pack("{s:o, s:f, s:f, s:f}", "velocity", vector_of(model->wind.velocity), "density",
                       model->wind.density, "drag", model->wind.drag, "lift", model->wind.lift),
             "");
+    put_moves(writer, model);
     put_releases(writer, model);
     put(writer, ",\n\"time\": ", json_pack("{s:f, s:f}", "duration", model->duration, "step", model->step), "");
     if (truth_goes_along(model)) put(writer, ",\n\"truth\": ", json_string(model->truth), "");
@@ -183,6 +223,17 @@ static void line(FILE *out, const char *word, const double *numbers, int count) 
     fprintf(out, "\n");
 }
 
+static void write_path(FILE *out, const ck_Path *path) {
+    static const char *const kinds[] = {"velocity", "sine", "points"};
+    const double *v = path->vector, numbers[] = {path->from, path->to, v[0], v[1], v[2], path->frequency};
+    if (path->kind != CK_PATH_POINTS) {
+        line(out, kinds[path->kind], numbers, path->kind == CK_PATH_SINE ? 6 : 5);
+        return;
+    }
+    fprintf(out, "points %d\n", path->point_count);
+    for (int i = 0; i < path->point_count; i++) line(out, "", path->points[i], 4);
+}
+
 void ck_export_lines(FILE *out, const ck_Model *model) {
     fprintf(out, "frames %d\n", model->frame_count);
     line(out, "step", &model->step, 1);
@@ -225,6 +276,11 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
         fprintf(out, "faces %d\n", wind->face_count);
         for (int i = 0; i < wind->face_count; i++)
             fprintf(out, "%d %d %d\n", wind->faces[i][0], wind->faces[i][1], wind->faces[i][2]);
+    }
+    if (model->driven_count) fprintf(out, "moves %d\n", model->driven_count);
+    for (int i = 0; i < model->driven_count; i++) {
+        fprintf(out, "%d %.17g ", model->driven[i].particle, model->driven[i].until);
+        write_path(out, model->driven[i].path);
     }
     fprintf(out, "colliders %d\n", model->collider_count);
     for (int i = 0; i < model->collider_count; i++) {

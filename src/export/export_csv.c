@@ -1,5 +1,6 @@
 #include "csv_writer.h"
 #include "export.h"
+#include "path.h"
 
 #include <math.h>
 
@@ -39,6 +40,14 @@ static const ck_Layout colliders = {"colliders.csv",
                                      {"restitution", CK_COLUMN_NUMBER},
                                      {"friction", CK_COLUMN_NUMBER}}};
 
+static const ck_Layout moves = {"moves.csv",
+                                "where each pin that moves is at every frame, s and m",
+                                {{"particle", CK_COLUMN_NUMBER},
+                                 {"time_s", CK_COLUMN_NUMBER},
+                                 {"x", CK_COLUMN_NUMBER},
+                                 {"y", CK_COLUMN_NUMBER},
+                                 {"z", CK_COLUMN_NUMBER}}};
+
 static const ck_Layout scene = {"scene.csv",
                                 "what acts on all of it",
                                 {{"key", CK_COLUMN_NAME}, {"unit", CK_COLUMN_NAME}, {"value", CK_COLUMN_NUMBER}}};
@@ -71,6 +80,20 @@ static void add_springs(ck_Csv *csv, const ck_Model *model) {
         add_numbers(csv, numbers, 5);
         ck_csv_text(csv, ck_export_kinds[spring->kind]);
     }
+}
+
+static void add_moves(ck_Csv *csv, const ck_Model *model) {
+    for (int i = 0; i < model->driven_count; i++)
+        for (int frame = 0; frame <= model->frame_count; frame++) {
+            const ck_Driven *driven = &model->driven[i];
+            const double time = frame * model->step;
+            double at[3];
+            if (!ck_driven_holds(model, driven, time)) break;
+            ck_driven_at(driven, time, at);
+            ck_csv_number(csv, driven->particle);
+            ck_csv_number(csv, time);
+            add_numbers(csv, at, 3);
+        }
 }
 
 static void add_colliders(ck_Csv *csv, const ck_Model *model) {
@@ -111,14 +134,18 @@ static void add_scene(ck_Csv *csv, const ck_Model *model) {
 }
 
 ck_Status ck_export_csv(const char *directory, const ck_Model *model, ck_Error *error) {
-    static const struct {
+    const struct {
         const ck_Layout *layout;
         void (*add)(ck_Csv *csv, const ck_Model *model);
-    } tables[] = {
-        {&particles, add_particles}, {&springs, add_springs}, {&colliders, add_colliders}, {&scene, add_scene}};
+    } tables[] = {{&particles, add_particles},
+                  {&springs, add_springs},
+                  {&colliders, add_colliders},
+                  {&scene, add_scene},
+                  {model->driven_count ? &moves : NULL, add_moves}};
     ck_Status status = CK_OK;
     for (size_t i = 0; i < sizeof tables / sizeof *tables && !status; i++) {
         ck_Csv csv = {0};
+        if (!tables[i].layout) continue;
         status = ck_csv_open(&csv, directory, tables[i].layout, error);
         if (!status) tables[i].add(&csv, model);
         if (!status) status = ck_csv_close(&csv, error);

@@ -1,8 +1,8 @@
 #include "hinges.h"
+#include "path.h"
 #include "springs.h"
 
 #include "vector.h"
-#include "wind.h"
 
 #include <string.h>
 
@@ -38,7 +38,7 @@ double ck_energy_scale(const ck_Model *model, const ck_Trajectory *trajectory) {
 }
 
 double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *trajectory) {
-    if (ck_wind_blows(model)) return 0; // it gives what it likes
+    if (ck_model_is_worked_on(model)) return 0; // it gets what is given
     bool is_snapping = (model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model);
     int first = is_snapping ? (trajectory->frame_count + 9) / 10 : 1;
     ck_Energy start = ck_energy_at(model, trajectory, 0);
@@ -88,7 +88,7 @@ static bool loses_otherwise(const ck_Model *model) {
 }
 
 double ck_energy_drift(const ck_Model *model, const ck_Trajectory *trajectory) {
-    if (ck_wind_blows(model)) return NAN;
+    if (ck_model_is_worked_on(model)) return NAN;
     ck_Energy start = ck_energy_at(model, trajectory, 0);
     double total = ck_energy_total(&start), taken = 0, taken_coarsely = 0, unsure = 0, drift = 0;
     double before = damping_power(model, trajectory, 0), even = before;

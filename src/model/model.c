@@ -24,6 +24,8 @@ const char *const ck_term_names[CK_TERM_COUNT] = {
     "bending",
     "wind",
     "springs that only pull",
+    "moving pins",
+    "moving colliders",
 };
 
 const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness",
@@ -270,8 +272,10 @@ static unsigned terms_in_use(const ck_Model *model) {
     for (int i = 0; i < model->particle_count; i++)
         if (ck_length(model->velocity + 3 * i) > 0) terms |= CK_TERM_VELOCITY;
     for (int i = 0; i < model->collider_count; i++)
-        terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
+        terms |= (model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE) |
+                 (model->colliders[i].path ? CK_TERM_MOVING_COLLIDERS : 0);
     if (model->release_count) terms |= CK_TERM_RELEASE;
+    if (model->driven_count) terms |= CK_TERM_MOVES;
     if (model->hinge_count) terms |= CK_TERM_BENDING;
     if (model->wind.face_count) terms |= CK_TERM_WIND;
     return terms;
@@ -291,6 +295,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (!status) status = set_start(model, scene, error);
     if (!status) status = set_releases(model, scene, error);
     if (!status) status = set_colliders(model, scene, error);
+    if (!status) status = ck_model_set_paths(model, scene, error);
     if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
     if (status) return status;
     ck_model_add_noise(model, scene);
@@ -310,6 +315,9 @@ void ck_model_free(ck_Model *model) {
         free(model->groups[i].name);
         free(model->groups[i].particles);
     }
+    for (int i = 0; i < model->path_count; i++) free(model->paths[i].points);
+    free(model->paths);
+    free(model->driven);
     free(model->groups);
     free(model->hinges);
     free(model->wind.faces);

@@ -28,7 +28,9 @@ typedef enum ck_Term {
     CK_TERM_BENDING = 1 << 10, // hinges
     CK_TERM_WIND = 1 << 11,
     CK_TERM_PULL_ONLY = 1 << 12, // springs that hang slack where they are shorter than at rest
-    CK_TERM_COUNT = 13,
+    CK_TERM_MOVES = 1 << 13,     // pins that are moved
+    CK_TERM_MOVING_COLLIDERS = 1 << 14,
+    CK_TERM_COUNT = 15,
 } ck_Term;
 
 // The name of the term in bit order, as a scene's author knows it.
@@ -62,6 +64,27 @@ typedef struct ck_Wind {
     int face_count;              // 0: no air
 } ck_Wind;
 
+typedef enum ck_PathKind { CK_PATH_VELOCITY, CK_PATH_SINE, CK_PATH_POINTS } ck_PathKind;
+
+// How something moves from where it starts: see path.h.
+typedef struct ck_Path {
+    ck_PathKind kind;
+    double from, to;     // s: it stays before and after; INFINITY: to the end
+    double vector[3];    // m/s, or m of a sine
+    double frequency;    // 1/s
+    double (*points)[4]; // [point_count] s and m
+    int point_count;
+    double slack; // s: what a time may be off, by rounding
+} ck_Path;
+
+// A pin that is moved.
+typedef struct ck_Driven {
+    int particle;
+    double start[3];     // m
+    const ck_Path *path; // of the model's
+    double until;        // s: when it is let go; INFINITY: never
+} ck_Driven;
+
 typedef enum ck_ColliderShape { CK_PLANE, CK_SPHERE } ck_ColliderShape;
 
 typedef struct ck_Collider {
@@ -70,6 +93,7 @@ typedef struct ck_Collider {
     double normal[3]; // unit, plane only
     double radius;    // m, sphere only
     double restitution, friction;
+    const ck_Path *path; // of the model's; NULL: it stays
 } ck_Collider;
 
 typedef struct ck_Release {
@@ -116,6 +140,10 @@ typedef struct ck_Model {
     int collider_count;
     ck_Release *releases;
     int release_count;
+    ck_Path *paths;
+    int path_count;
+    ck_Driven *driven;
+    int driven_count;
     unsigned terms;        // ck_Term bits in use
     double size;           // m: rope's rest length, cloth's longer rest side, else the bounding box's diagonal
     double spacing;        // m: between neighbours; of a network or mesh its shortest spring

@@ -26,9 +26,11 @@ bool ck_leapfrog_substep(ck_Native *native, bool (*solve)(ck_Native *native)) {
                 native->position[3 * i + axis] += dt * slow * (keep * v[axis] + dt * field[axis]);
         }
     }
+    ck_native_drive(native);
     bool solved = solve(native);
     for (int i = 0; i < 3 * model->particle_count; i++)
         native->velocity[i] = (native->position[i] - native->origin[i]) / dt;
+    ck_native_drive_speed(native);
     return solved;
 }
 

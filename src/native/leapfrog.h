@@ -18,7 +18,7 @@ bool ck_leapfrog_substep(ck_Native *native, bool (*solve)(ck_Native *native));
 // Position and velocity at the same time, as ck_Engine.read.
 void ck_leapfrog_read(const void *state, double *position, double *velocity);
 
-// Lets a pinned particle go, at rest.
+// Lets a pinned particle go, with the speed it has.
 void ck_leapfrog_release(void *state, int particle);
 
 // Adds all rows: what bars do not model, stiffness and damping, is impossible unless the scene's bars are rigid.

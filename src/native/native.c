@@ -2,6 +2,7 @@
 
 #include "constraint_kernel.h"
 #include "loops.h"
+#include "path.h"
 #include "vector.h"
 
 #include <stdint.h>
@@ -42,6 +43,7 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
     memcpy(native->position, model->position, vectors * sizeof(double));
     memcpy(native->velocity, model->velocity, vectors * sizeof(double));
     for (int i = 0; i < model->particle_count; i++) native->inverse_mass[i] = ck_model_inverse_mass(model, i);
+    if (model->driven_count) ck_driven_place(model, 0, 1, native->position, native->velocity);
     *out = native;
     return CK_OK;
 }
@@ -84,6 +86,19 @@ void ck_native_start_substep(ck_Native *native) {
     size_t bytes = 3 * sizeof(double) * (size_t)native->model->particle_count;
     memcpy(native->start, native->position, bytes);
     if (native->contact) memcpy(native->origin, native->start, bytes);
+}
+
+void ck_native_drive(ck_Native *native) {
+    native->done++;
+    if (native->model->driven_count)
+        ck_driven_place(native->model, (double)native->done * native->dt, -1, native->position, NULL);
+}
+
+void ck_native_drive_speed(ck_Native *native) {
+    if (!native->model->driven_count) return;
+    const double time = (double)native->done * native->dt;
+    ck_driven_place(native->model, time, -1, native->position, native->velocity);
+    ck_driven_place(native->model, time, -1, native->position, native->other_velocity);
 }
 
 void ck_native_release(void *state, int particle) {

@@ -14,6 +14,7 @@ typedef struct ck_Native {
     double dt; // s, one substep
     ck_Settings used;
     uint32_t substeps, iterations;
+    uint64_t done;                   // substeps
     double *position, *velocity;     // [3*n]
     double *start;                   // [3*n] positions at the start of the substep
     double *origin;                  // [3*n] what a substep's velocity is measured from: start, but for impacts
@@ -34,7 +35,7 @@ typedef struct ck_Native {
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
     (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |           \
-     CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE)
+     CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES)
 
 // Allocates and sets the start state. Errors: CK_NO_MEMORY.
 ck_Status ck_native_create(ck_Native **native, const ck_Model *model, const ck_Settings *used, ck_Error *error);
@@ -52,7 +53,12 @@ const struct ck_Loops *ck_native_loops(const ck_Native *native);
 // Notes the positions at the start of a substep.
 void ck_native_start_substep(ck_Native *native);
 
-// Lets a pinned particle go, at rest.
+// Puts the pins that move where they are at the end of the substep: once in each. Then gives them their velocity, and
+// the other one.
+void ck_native_drive(ck_Native *native);
+void ck_native_drive_speed(ck_Native *native);
+
+// Lets a pinned particle go, with the speed it has.
 void ck_native_release(void *state, int particle);
 
 // The mean force of the colliders on the body over the last frame, [3] N.

@@ -2,6 +2,7 @@
 #include "engine.h"
 #include "hinges.h"
 #include "native.h"
+#include "path.h"
 #include "spring_kernel.h"
 #include "time_scale.h"
 #include "vector.h"
@@ -52,6 +53,17 @@ static void accelerate(const ck_Native *native, double *acceleration) {
     }
 }
 
+// Where a pin's speed jumps between two substeps, dampers pull otherwise from then on: so the order stays two.
+static void follow_jump(ck_Native *native) {
+    const ck_Model *model = native->model;
+    const double time = (double)native->done * native->dt;
+    if (!model->driven_count || !(model->terms & (CK_TERM_DAMPING | CK_TERM_WIND)) || !ck_driven_jump(model, time))
+        return;
+    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
+    ck_driven_place(model, time, 1, native->position, native->other_velocity);
+    accelerate(native, native->acceleration);
+}
+
 // As substep, where every particle's motion under its acceleration is followed through contact: what is left of both
 // accelerations, by the state at the end, makes the correction.
 static void substep_with_contact(ck_Native *native) {
@@ -64,12 +76,15 @@ static void substep_with_contact(ck_Native *native) {
         ck_contact_filter(native->contact, x + 3 * i, v + 3 * i, a, left);
         ck_add_scaled(v + 3 * i, -0.5 * native->dt, left);
     }
+    ck_native_drive(native);
+    ck_native_drive_speed(native);
     accelerate(native, native->acceleration);
     for (int i = 0; i < native->model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         ck_contact_filter(native->contact, x + 3 * i, predicted + 3 * i, native->acceleration + 3 * i, left);
         ck_add_scaled(v + 3 * i, 0.5 * native->dt, left);
     }
+    follow_jump(native);
 }
 
 // x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  a' = a(x, v*);  v ← v + (a + a')·dt/2
@@ -89,8 +104,11 @@ static void substep(ck_Native *native) {
         predicted[i] = velocity[i] + dt * acceleration[i];
         velocity[i] += 0.5 * dt * acceleration[i];
     }
+    ck_native_drive(native);
+    ck_native_drive_speed(native);
     accelerate(native, acceleration);
     for (int i = 0; i < count; i++) velocity[i] += 0.5 * dt * acceleration[i];
+    follow_jump(native);
 }
 
 // Time step: half of the stability bound, so that a cloth that folds (up to √2 in ω) stays inside;

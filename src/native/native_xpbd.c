@@ -95,6 +95,7 @@ static void substep(ck_Native *native) {
             ck_add_scaled(native->position + 3 * i, dt * dt, field);
         }
     }
+    ck_native_drive(native);
     for (uint32_t i = 0; i < native->iterations; i++) {
         sweep(native);
         if (native->bending) sweep_hinges(native);
@@ -102,6 +103,7 @@ static void substep(ck_Native *native) {
     }
     for (int i = 0; i < 3 * model->particle_count; i++)
         native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
+    ck_native_drive_speed(native);
 }
 
 // Σ w²/m of a hinge, 1/(kg·m²).

@@ -153,6 +153,43 @@ static void read_faces(Server *server) {
     }
 }
 
+static void read_path(Server *server, ck_Path *path) {
+    if (!next_word(server)) fail("the scene ends within a path");
+    path->kind = !strcmp(server->word, "points") ? CK_PATH_POINTS
+                 : !strcmp(server->word, "sine") ? CK_PATH_SINE
+                                                 : CK_PATH_VELOCITY;
+    path->slack = 1e-9 * server->model.step;
+    if (path->kind != CK_PATH_POINTS) {
+        path->from = number(server);
+        path->to = number(server);
+        vector(server, path->vector);
+        if (path->kind == CK_PATH_SINE) path->frequency = number(server);
+        return;
+    }
+    path->point_count = count(server);
+    path->points = allocate((size_t)path->point_count, sizeof *path->points);
+    for (int i = 0; i < 4 * path->point_count; i++) path->points[i / 4][i % 4] = number(server);
+    if (path->point_count < 2) fail("a path has at least two points");
+    path->from = path->points[0][0];
+    path->to = path->points[path->point_count - 1][0];
+}
+
+// Pins that move: each with a path of its own.
+static void read_moves(Server *server) {
+    ck_Model *model = &server->model;
+    model->driven_count = model->path_count = count(server);
+    model->driven = allocate((size_t)model->driven_count, sizeof *model->driven);
+    model->paths = allocate((size_t)model->path_count, sizeof *model->paths);
+    for (int i = 0; i < model->driven_count; i++) {
+        ck_Driven *driven = &model->driven[i];
+        ck_Path *path = &model->paths[i];
+        *driven = (ck_Driven){.particle = count(server), .path = path, .until = number(server)};
+        if (driven->particle >= model->particle_count) fail("no such particle moves");
+        memcpy(driven->start, model->position + 3 * driven->particle, sizeof driven->start);
+        read_path(server, path);
+    }
+}
+
 static void read_setting(Server *server) {
     if (!next_word(server)) fail("the scene ends within a setting");
     const ck_Setting *setting = ck_setting_find(server->engine->settings, server->word);
@@ -170,6 +207,7 @@ static unsigned terms_of(const ck_Model *model) {
         if (model->springs[i].damping > 0) terms |= CK_TERM_DAMPING;
         if (model->springs[i].pulls_only) terms |= CK_TERM_PULL_ONLY;
     }
+    if (model->driven_count) terms |= CK_TERM_MOVES;
     if (model->hinge_count) terms |= CK_TERM_BENDING;
     if (model->wind.face_count) terms |= CK_TERM_WIND;
     if (memcmp(model->gravity, none, sizeof none)) terms |= CK_TERM_GRAVITY;
@@ -214,6 +252,8 @@ static void read_scene(Server *server) {
             read_faces(server);
         else if (!strcmp(word, "hinges"))
             read_hinges(server);
+        else if (!strcmp(word, "moves"))
+            read_moves(server);
         else if (!strcmp(word, "colliders"))
             read_colliders(server);
         else if (!strcmp(word, "setting"))

@@ -9,12 +9,20 @@ static uint32_t scale_count(uint32_t count, double share) {
     return fabs(segments - round(segments)) < 1e-9 * segments && segments >= 1 ? (uint32_t)round(segments) + 1 : 0;
 }
 
+static bool has_number(char *const *pins, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++)
+        if (pins[i][strspn(pins[i], "0123456789:")] == 0) return true;
+    return false;
+}
+
 const char *ck_scene_resize_refusal(const ck_SceneFile *file, double share) {
     if (!file->cloth && !file->rope) return "it is neither a cloth nor a rope";
     // pins by number would be others then
-    for (uint32_t i = 0; i < file->pins_count; i++)
-        if (file->pins[i][strspn(file->pins[i], "0123456789:")] == 0)
-            return "its pins are numbered, and would be others: name a corner, an edge or a place, as 'y > 0.5'";
+    bool is_numbered = has_number(file->pins, file->pins_count);
+    for (uint32_t i = 0; i < file->moves_count; i++)
+        is_numbered |= has_number(file->moves[i].pins, file->moves[i].pins_count);
+    if (is_numbered)
+        return "its pins are numbered, and would be others: name a corner, an edge or a place, as 'y > 0.5'";
     if (file->release_count) return "it lets pins go";
     bool is_whole = file->rope ? scale_count(file->rope->particles, share)
                                : scale_count(file->cloth->rows, share) && scale_count(file->cloth->columns, share);

@@ -114,10 +114,28 @@ typedef struct ck_SceneSphere {
     double restitution, friction;
 } ck_SceneSphere;
 
+// How something moves from where it starts: in one of four ways.
+typedef struct ck_ScenePath {
+    double from, to;     // s, of the first two ways: it stays before and after; to 0: to the end
+    double *velocity;    // [3] m/s
+    double *amplitude;   // [3] m, of a sine
+    double frequency;    // 1/s, of that
+    double (*points)[4]; // s, and m: joined by a smooth curve; only how it moves from the first counts
+    uint32_t points_count;
+    char *file; // CSV of such points, beside the scene's
+} ck_ScenePath;
+
 typedef struct ck_SceneCollider {
     ck_ScenePlane *plane;
     ck_SceneSphere *sphere;
+    ck_ScenePath *path; // NULL: it stays
 } ck_SceneCollider;
+
+typedef struct ck_SceneMove {
+    char **pins;
+    uint32_t pins_count;
+    ck_ScenePath path;
+} ck_SceneMove;
 
 typedef struct ck_SceneRelease {
     double at; // s
@@ -155,11 +173,13 @@ typedef struct ck_SceneFile {
     char **pins;
     uint32_t pins_count;
     ck_SceneNoise *noise;
-    char *start; // equilibrium: where it comes to rest; NULL: as it is given
+    char *start;                        // equilibrium: where it comes to rest; NULL: as it is given
     double *gravity, *force, *velocity; // [3] m/s², N on each particle, m/s; NULL: none
     double drag;                        // 1/s
     ck_SceneCollider *colliders;
     uint32_t colliders_count;
+    ck_SceneMove *moves;
+    uint32_t moves_count;
     ck_SceneRelease *release;
     uint32_t release_count;
     ck_SceneTime time;

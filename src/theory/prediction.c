@@ -319,7 +319,8 @@ ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, 
     const Theory *theory = find_theory(engine->method, truth);
     bool network = !theory && truth->path_count && truth->form->is_static;
     // no theory knows these
-    const unsigned beyond = CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY;
+    const unsigned beyond =
+        CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
     if ((!theory && !network) || left_theory(engine, used) || (model->terms & beyond)) return CK_OK;
     ck_Trajectory *path = &prediction->trajectory;
     ck_Status status = ck_trajectory_create(path, model, error);

@@ -25,8 +25,8 @@ typedef struct ck_Equilibrium {
 // The full Hessian, with μ·I added only where it is not positive definite (slack springs make it so); line search on
 // the energy.
 //   start  [3*n] m
-// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders, wind or no pins, or Newton does not get there.
-// Free with ck_equilibrium_free in any case.
+// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders, wind or no pins, or Newton does not get
+// there. Free with ck_equilibrium_free in any case.
 ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
                                ck_Error *error);
 

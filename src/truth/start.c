@@ -7,6 +7,8 @@
 
 // Seconds of falling at most, in frames of the scene; what is not at rest then is left to Newton.
 #define MOST_FRAMES 20000
+// Of the spacing, for a start that only symmetry holds up.
+#define NUDGE 1e-3
 
 static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     for (int i = 0; i < model->particle_count; i++)
@@ -23,12 +25,18 @@ static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_
 
 static ck_Status settle(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     ck_Model held = *model;
-    held.collider_count = held.release_count = 0;
-    held.terms &= ~(unsigned)(CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE);
+    held.collider_count = held.release_count = held.driven_count = held.path_count = 0;
+    held.terms &=
+        ~(unsigned)(CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS);
     held.frame_count = MOST_FRAMES;
     ck_Equilibrium equilibrium;
     ck_Error why = {0};
     ck_Status status = ck_equilibrium_release(&equilibrium, &held, 0, 0, &why);
+    // a body as symmetric as it was drawn may balance where it would not stay
+    if (status == CK_REFUSED) {
+        ck_equilibrium_free(&equilibrium);
+        status = ck_equilibrium_release(&equilibrium, &held, NUDGE * model->spacing, 1, &why);
+    }
     if (!status) memcpy(model->position, equilibrium.position, 3 * sizeof(double) * (size_t)model->particle_count);
     ck_equilibrium_free(&equilibrium);
     if (status == CK_REFUSED) return ck_scene_fail(scene, "start", error, "%s", why.message);

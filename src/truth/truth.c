@@ -20,18 +20,23 @@
 
 #define CLOSED "closed form"
 // What a form must say that it knows.
-#define EXTRAS (CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY)
+#define EXTRAS                                                                                                         \
+    (CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |             \
+     CK_TERM_MOVING_COLLIDERS)
 
 // Adding a truth is one function and one row here.
 static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
      .terms = CK_TERM_WIND | CK_TERM_PULL_ONLY, .check = ck_truth_equilibrium_check,
      .solve = ck_truth_solve_equilibrium},
-    {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), step halved until two runs agree to 1e-9", false,
-     .terms = CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY, .is_chaotic = true,
+    {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), bars as constraints, step halved until two runs agree to 1e-9", false,
+     .terms = CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES, .is_chaotic = true,
      .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
-     true, .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_PULL_ONLY},
+     true,
+     .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
+              CK_TERM_MOVING_COLLIDERS,
+     .check = ck_truth_rest_check},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
      .terms = CK_TERM_PULL_ONLY, .at = ck_truth_vertical_chain},
     {"catenary", CLOSED,

@@ -35,6 +35,12 @@ double ck_body_share_area(ck_Model *model, double density);
 // The air of a scene, and the faces that it acts on. Errors: CK_BAD_INPUT where there are none, CK_NO_MEMORY.
 ck_Status ck_model_set_wind(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 
+// The paths of the pins and colliders that move. Errors: CK_BAD_INPUT, CK_NO_MEMORY.
+ck_Status ck_model_set_paths(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
+// The path of a file that a scene names, beside the scene's. NULL without memory. The caller frees it.
+char *ck_body_file(const ck_Scene *scene, const char *file);
+
 // Room for so many particles and springs. Errors: CK_BAD_INPUT where there are too many, CK_NO_MEMORY.
 ck_Status ck_body_allocate(ck_Model *model, const ck_Scene *scene, const char *body, double particles, double springs,
                            ck_Error *error);

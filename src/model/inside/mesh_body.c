@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The file's path beside that of the scene. NULL without memory.
-static char *path_of(const ck_Scene *scene) {
-    const char *file = scene->file->mesh->file, *folder = scene->document.path, *end = strrchr(folder, '/');
+char *ck_body_file(const ck_Scene *scene, const char *file) {
+    const char *folder = scene->document.path, *end = strrchr(folder, '/');
     char *path;
     if (*file == '/' || !end) return strdup(file);
     return asprintf(&path, "%.*s/%s", (int)(end - folder), folder, file) < 0 ? NULL : path;
@@ -28,7 +27,7 @@ static ck_Status load(ck_Mesh *mesh, const ck_Scene *scene, ck_Error *error) {
     ck_Status status = ck_body_mass(&mass, scene, from->mass > 0 ? from->mass : from->density, 1, "mesh", error);
     if (status) return status;
     ck_Error inner = {0};
-    char *path = path_of(scene);
+    char *path = ck_body_file(scene, from->file);
     status = path ? ck_mesh_load(mesh, path, &options, &inner) : CK_NO_MEMORY;
     free(path);
     return status == CK_BAD_INPUT ? ck_scene_fail(scene, "mesh.file", error, "%s", inner.message) : status;

@@ -4,8 +4,8 @@
 
 #include "model.h"
 
-static const char *const ck_term_words[CK_TERM_COUNT] = {"springs", "rigid",    "damping", "gravity", "force",
-                                                         "drag",    "velocity", "plane",   "sphere",  "release",
-                                                         "bending", "wind",     "slack"};
+static const char *const ck_term_words[CK_TERM_COUNT] = {
+    "springs", "rigid",   "damping", "gravity", "force", "drag",  "velocity",        "plane",
+    "sphere",  "release", "bending", "wind",    "slack", "moves", "moving_colliders"};
 
 #endif

@@ -48,6 +48,12 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"colliders[].sphere.radius", CK_RANGE_POSITIVE},
     {"colliders[].sphere.restitution", CK_RANGE_UNIT},
     {"colliders[].sphere.friction", CK_RANGE_NOT_NEGATIVE},
+    {"moves[].path.from", CK_RANGE_NOT_NEGATIVE},
+    {"moves[].path.to", CK_RANGE_POSITIVE},
+    {"moves[].path.frequency", CK_RANGE_POSITIVE},
+    {"colliders[].path.from", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].path.to", CK_RANGE_POSITIVE},
+    {"colliders[].path.frequency", CK_RANGE_POSITIVE},
     {"release[].at", CK_RANGE_NOT_NEGATIVE},
     {"time.duration", CK_RANGE_POSITIVE},
     {"time.step", CK_RANGE_POSITIVE},
@@ -202,9 +208,23 @@ static const cyaml_schema_field_t sphere_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_value_t path_point = {CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, double, &number, 4)};
+static const cyaml_schema_field_t path_fields[] = {
+    CYAML_FIELD_FLOAT("from", OPTIONAL, ck_ScenePath, from),
+    CYAML_FIELD_FLOAT("to", OPTIONAL, ck_ScenePath, to),
+    CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_ScenePath, velocity, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("amplitude", OPTIONAL | CYAML_FLAG_POINTER, ck_ScenePath, amplitude, &number, 3),
+    CYAML_FIELD_FLOAT("frequency", OPTIONAL, ck_ScenePath, frequency),
+    CYAML_FIELD_SEQUENCE("points", OPTIONAL | CYAML_FLAG_POINTER, ck_ScenePath, points, &path_point, 2,
+                         CK_SCENE_MAX_PARTICLES),
+    CYAML_FIELD_STRING_PTR("file", OPTIONAL | CYAML_FLAG_POINTER, ck_ScenePath, file, 1, 1000),
+    CYAML_FIELD_END,
+};
+
 static const cyaml_schema_field_t collider_fields[] = {
     CYAML_FIELD_MAPPING_PTR("plane", OPTIONAL, ck_SceneCollider, plane, plane_fields),
     CYAML_FIELD_MAPPING_PTR("sphere", OPTIONAL, ck_SceneCollider, sphere, sphere_fields),
+    CYAML_FIELD_MAPPING_PTR("path", OPTIONAL, ck_SceneCollider, path, path_fields),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t collider = {
@@ -216,6 +236,13 @@ static const cyaml_schema_field_t release_fields[] = {
     CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t release = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneRelease, release_fields)};
+
+static const cyaml_schema_field_t move_fields[] = {
+    CYAML_FIELD_SEQUENCE("pins", REQUIRED | CYAML_FLAG_POINTER, ck_SceneMove, pins, &text, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_MAPPING("path", REQUIRED, ck_SceneMove, path, path_fields),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t move = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneMove, move_fields)};
 
 static const cyaml_schema_field_t time_fields[] = {
     CYAML_FIELD_FLOAT("duration", REQUIRED, ck_SceneTime, duration),
@@ -256,6 +283,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, velocity, &number, 3),
     CYAML_FIELD_FLOAT("drag", OPTIONAL, ck_SceneFile, drag),
     CYAML_FIELD_SEQUENCE("colliders", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, colliders, &collider, 0, 1000),
+    CYAML_FIELD_SEQUENCE("moves", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, moves, &move, 0, 1000),
     CYAML_FIELD_SEQUENCE("release", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, release, &release, 0, 1000),
     CYAML_FIELD_MAPPING("time", REQUIRED, ck_SceneFile, time, time_fields),
     CYAML_FIELD_STRING_PTR("truth", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, truth, 1, 100),

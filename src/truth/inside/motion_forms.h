@@ -16,9 +16,9 @@ ck_Status ck_truth_oscillator(const ck_Model *model, double time, double *positi
 ck_Status ck_truth_taut_string(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
 double ck_truth_taut_string_off(const ck_Model *model);
 
-// A straight rope that is let go stretched, as a slinky held by its top: its centre falls freely, its bottom stays until
-// the wave from the top arrives, after √(M/K), K of the whole. Exact until coils meet, which is an error. Source: Cross
-// and Wheatland 2012, arXiv 1208.4629.
+// A straight rope that is let go stretched, as a slinky held by its top: its centre falls freely, its bottom stays
+// until the wave from the top arrives, after √(M/K), K of the whole. Exact until coils meet, which is an error. Source:
+// Cross and Wheatland 2012, arXiv 1208.4629.
 ck_Status ck_truth_slinky(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error);
 
 // A stiff rope hanging from its first particle, thrown sideways. Linear in the amplitude, for bars that do not stretch.

@@ -1,9 +1,11 @@
 #include "roots.h"
 
 #include "equilibrium.h"
+#include "path.h"
 #include "process.h"
 #include "rest_forms.h"
 #include "runge_kutta.h"
+#include "springs.h"
 #include "time_scale.h"
 #include "wind.h"
 
@@ -27,8 +29,13 @@ ck_Status ck_truth_equilibrium_check(const ck_Model *model, ck_Error *error) {
 }
 
 ck_Status ck_truth_trajectory_check(const ck_Model *model, ck_Error *error) {
-    return ck_truth_need(!(model->terms & CK_TERM_RIGID), model, error,
-                         "springs: its integrator has no rigid bars; for them there are pendulum and free_fall");
+    bool fits = !(model->terms & CK_TERM_RIGID) || ck_springs_start_at_rest(model);
+    return ck_truth_need(fits, model, error, "bars that start at their lengths: how others snap to them is not known");
+}
+
+ck_Status ck_truth_rest_check(const ck_Model *model, ck_Error *error) {
+    return ck_truth_need(!ck_model_ends_moving(model), model, error,
+                         "pins and colliders that stay before the end: else nothing comes to rest");
 }
 
 // Adds a path of a single frame at rest.

@@ -6,7 +6,8 @@
 #include "status.h"
 #include "trajectory.h"
 
-// The path from the model's start by the classical fourth-order Runge–Kutta method, substeps to a frame.
+// The path from the model's start by the classical fourth-order Runge–Kutta method, substeps to a frame. Rigid bars are
+// constraints on accelerations, and put right after each step; a step ends where a moved pin's speed jumps.
 //   nudge  m, added to the start of every free coordinate with a sign of its own, by seed; 0: none
 // Writes all frames; stops early, with fewer frames, where numbers leave the finite.
 // Errors: CK_NO_MEMORY. Free trajectory in any case. Source: Kutta 1901.
@@ -28,7 +29,8 @@ typedef struct ck_ReferencePath {
 } ck_ReferencePath;
 
 // Halves the step until two paths agree to 1e-9 of the size up to the horizon, to 1e-6 where forces have kinks.
-// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars or colliders, or no affordable step agrees.
+// Errors: CK_NO_MEMORY; CK_REFUSED where the model has colliders or bars that do not start at their
+// lengths, or no affordable step agrees.
 // Free with ck_reference_path_free in any case.
 ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error);
 void ck_reference_path_free(ck_ReferencePath *path);

@@ -44,6 +44,13 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         value = ck_hash(value, numbers, sizeof numbers);
         value = ck_hash(value, wind->faces, (size_t)wind->face_count * sizeof *wind->faces);
     }
+    for (int i = 0; i < model->driven_count; i++) {
+        const ck_Path *path = model->driven[i].path;
+        const double numbers[] = {model->driven[i].particle, path->kind,      path->from,      path->to,
+                                  path->vector[0],           path->vector[1], path->vector[2], path->frequency};
+        value = ck_hash(value, numbers, sizeof numbers);
+        value = ck_hash(value, path->points, (size_t)path->point_count * sizeof *path->points);
+    }
     for (int i = 0; i < model->release_count; i++) {
         const ck_Release *release = &model->releases[i];
         value = ck_hash(value, &release->frame, sizeof release->frame);
