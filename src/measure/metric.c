@@ -173,6 +173,10 @@ static double settle_time_over(const ck_Model *model, const ck_Trajectory *traje
     return last_frame(trajectory) - frame >= (last_frame(trajectory) + 19) / 20 ? frame * trajectory->step : NAN;
 }
 
+bool ck_metric_comes_to_rest(const ck_Model *model, const ck_Trajectory *trajectory) {
+    return !isnan(settle_time_over(model, trajectory, NULL));
+}
+
 // How far the body moves over the last frames from first on, rms over particles / size.
 static double motion_since(const ck_Model *model, const ck_Trajectory *trajectory, int first) {
     double largest = 0;
@@ -306,7 +310,8 @@ double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_
 }
 
 double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_Reference *reference) {
-    if (metric->truth == CK_TRUTH_ONE_STILL) return reference->is_static ? 1 : NAN;
+    const bool is_still = reference->is_static || reference->comes_to_rest;
+    if (metric->truth == CK_TRUTH_ONE_STILL) return is_still ? 1 : NAN;
     if (metric->truth == CK_TRUTH_NONE || metric->truth == CK_TRUTH_OF_SERIES) return NAN;
     if (!reference->trajectory.frame_count && (!reference->is_invariant || metric->truth == CK_TRUTH_OF_STATE))
         return NAN;
@@ -315,7 +320,7 @@ double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_
         reference->horizon < last_frame(&reference->trajectory))
         return NAN;
     if (metric->truth == CK_TRUTH_OF_STATE) return ck_metric_value(metric, model, &reference->trajectory, reference);
-    return metric->truth == CK_TRUTH_ZERO || reference->is_static ? 0 : NAN;
+    return metric->truth == CK_TRUTH_ZERO || is_still ? 0 : NAN;
 }
 
 double ck_metric_deviation(const ck_Metric *metric, const ck_Model *model, const ck_Trajectory *one,

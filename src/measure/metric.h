@@ -9,9 +9,10 @@
 typedef struct ck_Reference {
     ck_Trajectory trajectory; // frame_count 0: there is none
     bool is_static;
-    bool is_invariant; // nothing is known of the shape, only what holds at rest whatever it is
-    int horizon;       // the last frame up to which positions can be compared point by point; unused when static
-    bool ends;         // at its horizon: of what follows nothing is known
+    bool is_invariant;  // nothing is known of the shape, only what holds at rest whatever it is
+    int horizon;        // the last frame up to which positions can be compared point by point; unused when static
+    bool ends;          // at its horizon: of what follows nothing is known
+    bool comes_to_rest; // it moves, but is at rest by its end
 } ck_Reference;
 
 // What a metric's truth is.
@@ -65,5 +66,8 @@ double ck_metric_deviation(const ck_Metric *metric, const ck_Model *model, const
 // The speed, in m/s, below which a body counts as settled: 0.1 % of √(field·size), or of its start speed without
 // field; at least a billionth of its size per second, below which there is only rounding.
 double ck_metric_still_speed(const ck_Model *model);
+
+// True for a path that is below that speed for its last twentieth.
+bool ck_metric_comes_to_rest(const ck_Model *model, const ck_Trajectory *trajectory);
 
 #endif

@@ -1,8 +1,21 @@
 #include "collider.h"
 
+#include "path.h"
 #include "vector.h"
 
 #include <string.h>
+
+ck_Collider ck_collider_at(const ck_Collider *collider, double time, int side, double *velocity, double *acceleration) {
+    ck_Collider now = *collider;
+    double moved[3];
+    memset(velocity, 0, 3 * sizeof(double));
+    memset(acceleration, 0, 3 * sizeof(double));
+    if (!collider->path) return now;
+    ck_path_at(collider->path, time, side, moved, velocity, acceleration);
+    ck_add_scaled(now.point, 1, moved);
+    now.path = NULL;
+    return now;
+}
 
 double ck_collider_gap(const ck_Collider *collider, const double *point, double *normal) {
     double from[3];

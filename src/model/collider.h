@@ -8,6 +8,10 @@
 extern "C" {
 #endif
 
+// The collider where it is at a time, s, that stays there; its velocity and acceleration then, [3] m/s and m/s².
+//   side  of a jump of its velocity, as ck_path_at has it
+ck_Collider ck_collider_at(const ck_Collider *collider, double time, int side, double *velocity, double *acceleration);
+
 // The distance of a point from the surface, in m, negative inside; normal: out, unit, away from the collider.
 double ck_collider_gap(const ck_Collider *collider, const double *point, double *normal);
 

@@ -92,7 +92,8 @@ void ck_driven_at(const ck_Driven *driven, double time, double *position) {
 
 const ck_Driven *ck_driven_find(const ck_Model *model, int particle, double time) {
     for (int i = 0; i < model->driven_count; i++)
-        if (model->driven[i].particle == particle && ck_driven_holds(model, &model->driven[i], time)) return &model->driven[i];
+        if (model->driven[i].particle == particle && ck_driven_holds(model, &model->driven[i], time))
+            return &model->driven[i];
     return NULL;
 }
 

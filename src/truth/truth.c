@@ -29,9 +29,12 @@ static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
      .terms = CK_TERM_WIND | CK_TERM_PULL_ONLY, .check = ck_truth_equilibrium_check,
      .solve = ck_truth_solve_equilibrium},
-    {"trajectory", "trajectory", "classical Runge-Kutta (Kutta 1901), bars as constraints, step halved until two runs agree to 1e-9", false,
-     .terms = CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES, .is_chaotic = true,
-     .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
+    {"trajectory", "trajectory",
+     "classical Runge-Kutta (Kutta 1901), bars as constraints, step halved until two runs agree to 1e-9", false,
+     .terms = EXTRAS, .is_chaotic = true, .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
+    {"converged", "trajectory",
+     "the same of a scene in contact: impacts, slip and stick located in time, Coulomb friction", false,
+     .terms = EXTRAS, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
      true,
      .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
@@ -213,6 +216,8 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
     truth->reference.trajectory = truth->paths[0];
     if (truth->form->off && !(truth->form->is_linear && truth->path_count > 1)) truth->off = truth->form->off(model);
+    if (!status && truth->path_count && !truth->form->is_static)
+        truth->reference.comes_to_rest = ck_metric_comes_to_rest(model, &truth->reference.trajectory);
     bool is_cut =
         !status && truth->path_count && !truth->form->is_static && truth->reference.horizon < model->frame_count;
     truth->reference.ends = is_cut && !truth->form->is_chaotic;

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-static const char *const scenes[] = {"rope_hanging", "cloth_two_corners", "cloth_on_sphere"};
+static const char *const scenes[] = {"rope_hanging", "cloth_two_corners", "cloth_on_ball"};
 
 static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
     ck_Answer *answer = &arguments->answer;

@@ -29,8 +29,18 @@ ck_Status ck_truth_equilibrium_check(const ck_Model *model, ck_Error *error) {
 }
 
 ck_Status ck_truth_trajectory_check(const ck_Model *model, ck_Error *error) {
-    bool fits = !(model->terms & CK_TERM_RIGID) || ck_springs_start_at_rest(model);
-    return ck_truth_need(fits, model, error, "bars that start at their lengths: how others snap to them is not known");
+    const bool is_rigid = model->terms & CK_TERM_RIGID;
+    ck_Status status = ck_truth_need(!is_rigid || ck_springs_start_at_rest(model), model, error,
+                                     "bars that start at their lengths: how others snap to them is not known");
+    return status ? status
+                  : ck_truth_need(!is_rigid || !model->collider_count, model, error,
+                                  "springs, or no colliders: its integrator has no rigid bars in contact");
+}
+
+ck_Status ck_truth_converged_check(const ck_Model *model, ck_Error *error) {
+    ck_Status status =
+        ck_truth_need(model->collider_count > 0, model, error, "colliders; without them take trajectory");
+    return status ? status : ck_truth_trajectory_check(model, error);
 }
 
 ck_Status ck_truth_rest_check(const ck_Model *model, ck_Error *error) {

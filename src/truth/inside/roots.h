@@ -7,6 +7,7 @@
 // What each needs of a model. Errors: CK_BAD_INPUT.
 ck_Status ck_truth_equilibrium_check(const ck_Model *model, ck_Error *error);
 ck_Status ck_truth_trajectory_check(const ck_Model *model, ck_Error *error);
+ck_Status ck_truth_converged_check(const ck_Model *model, ck_Error *error);
 ck_Status ck_truth_rest_check(const ck_Model *model, ck_Error *error);
 
 // The equilibrium that the release leads to, and those of nudged starts.

@@ -6,6 +6,7 @@
 #include "springs.h"
 #include "statistics.h"
 #include "time_scale.h"
+#include "touch.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -15,46 +16,98 @@
 // Of forces with a kink, of a face that turns its other side to the wind or a spring that goes slack: there the method
 // is of the second order.
 #define AGREEMENT_WITH_KINKS 1e-6
+// In contact, where the method is of the second to third order: what a nudge grows to up to the horizon.
+#define AGREEMENT_IN_CONTACT 1e-5
 #define GROWTH 1e4
 // Steps of a whole path that are tried at most; a 20×20 cloth takes some 50 µs each.
 #define MAX_STEPS 4e6
 
 // A path on its way: y = {x, v}, [6*n].
 typedef struct Walk {
-    ck_Model now;          // without what is a bar, and with the pins there still are
-    ck_Bars *bars;         // NULL: none
-    double *y, *stage, *k; // k1 … k4 are {v, a}, each [6*n]
-    bool has_failed;       // bars hold one another
+    ck_Model now;                  // without what is a bar, and with the pins there still are
+    ck_Bars *bars;                 // NULL: none
+    double *y, *stage, *begun, *k; // k1 … k4 are {v, a}, each [6*n]
+    bool has_failed;               // bars hold one another, or events follow one another for ever
+    bool is_wedged;                // a particle comes between two colliders
+    ck_Touches *touches;           // NULL: no colliders
+    double *free;                  // [3*n] accelerations without contact, of the derivative taken last
 } Walk;
 
-// Accelerations of the state there, with what moves pins and what bars pull with.
-//   y  [6*n] in, where moved pins are put;  k  [6*n] out
-static void derive(Walk *walk, double time, int side, double *y, double *k) {
+// Accelerations of the state there but for contact and bars, into free, with what moves pins.
+//   y  [6*n] in, where moved pins are put
+static void push(Walk *walk, double time, int side, double *y) {
     const size_t half = 3 * (size_t)walk->now.particle_count;
     if (walk->now.driven_count) ck_driven_place(&walk->now, time, side, y, y + half);
+    ck_springs_accelerate(&walk->now, y, y + half, walk->free);
+}
+
+// The derivative of a state whose free accelerations are known: with what colliders and bars allow of them.
+//   k  [6*n] out
+static void constrain(Walk *walk, double time, int side, const double *y, double *k) {
+    const size_t half = 3 * (size_t)walk->now.particle_count;
     memcpy(k, y + half, half * sizeof(double));
-    ck_springs_accelerate(&walk->now, y, y + half, k + half);
+    memcpy(k + half, walk->free, half * sizeof(double));
+    if (walk->touches) ck_touches_accelerate(walk->touches, time, side, y, y + half, k + half);
     if (!walk->bars) return;
     // bars follow the pins that move; a pin's own motion is not integrated
     if (walk->now.driven_count) ck_driven_accelerate(&walk->now, time, side, k + half);
     walk->has_failed |= !ck_bars_accelerate(walk->bars, y, y + half, k + half);
 }
 
-// One step. Source: Kutta 1901.
+// One step, from a state whose free accelerations are known. Source: Kutta 1901.
 static void runge_kutta(Walk *walk, double time, double dt) {
     static const double nodes[4] = {0, 0.5, 0.5, 1}, weights[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     const size_t whole = 6 * (size_t)walk->now.particle_count;
     double *y = walk->y, *k = walk->k;
-    for (int i = 0; i < 4; i++) {
+    constrain(walk, time, 1, y, k);
+    for (int i = 1; i < 4; i++) {
         double *now = k + (size_t)i * whole, *before = now - whole;
-        for (size_t j = 0; j < whole; j++) walk->stage[j] = y[j] + (i ? nodes[i] * dt * before[j] : 0);
-        derive(walk, time + nodes[i] * dt, i < 3 ? 1 : -1, walk->stage, now);
+        const double at = time + nodes[i] * dt;
+        for (size_t j = 0; j < whole; j++) walk->stage[j] = y[j] + nodes[i] * dt * before[j];
+        push(walk, at, i < 3 ? 1 : -1, walk->stage);
+        constrain(walk, at, i < 3 ? 1 : -1, walk->stage, now);
     }
     for (size_t j = 0; j < whole; j++)
         y[j] += dt * (weights[0] * k[j] + weights[1] * k[whole + j] + weights[2] * k[2 * whole + j] +
                       weights[3] * k[3 * whole + j]);
     if (walk->now.driven_count) ck_driven_place(&walk->now, time + dt, -1, y, y + whole / 2);
     if (walk->bars) walk->has_failed |= !ck_bars_project(walk->bars, y, y + whole / 2);
+    if (walk->touches) ck_touches_project(walk->touches, time + dt, y, y + whole / 2);
+}
+
+// Steps that make no way: then events follow one another for ever.
+#define MOST_STUCK 10000
+
+// As steps of dt, each of which ends where the first event comes. Cost: four passes over springs a step, and three more
+// an event.
+static void walk_events(Walk *walk, double time, double until, double dt) {
+    const size_t half = 3 * (size_t)walk->now.particle_count, whole = 2 * half;
+    double *y = walk->y, *begun = walk->begun;
+    int stuck = 0;
+    push(walk, time, 1, y);
+    while (until - time > 1e-12 * dt && !walk->has_failed && !ck_child_interrupted) {
+        const double step = until - time < dt * (1 + 1e-9) ? until - time : dt;
+        memcpy(begun, y, whole * sizeof(double));
+        memcpy(begun + whole, walk->free, half * sizeof(double));
+        ck_touches_start(walk->touches, time, step, y, y + half, walk->free);
+        runge_kutta(walk, time, step);
+        push(walk, time + step, -1, y);
+        const double share = ck_touches_first_event(walk->touches, step, y, y + half, walk->free);
+        if (share > 1) {
+            time += step;
+            stuck = 0;
+            continue;
+        }
+        memcpy(y, begun, whole * sizeof(double));
+        memcpy(walk->free, begun + whole, half * sizeof(double));
+        if (share > 0) runge_kutta(walk, time, share * step);
+        time += share * step;
+        walk->is_wedged |= !ck_touches_change(walk->touches, time, y, y + half);
+        push(walk, time, 1, y);
+        ck_touches_settle(walk->touches, time, y, y + half, walk->free);
+        stuck = share < 1e-9 ? stuck + 1 : 0;
+        walk->has_failed |= walk->is_wedged || stuck > MOST_STUCK;
+    }
 }
 
 static void nudge_start(const ck_Model *model, double *position, double nudge, uint64_t seed) {
@@ -71,6 +124,12 @@ static void let_go(const ck_Model *now, int frame) {
             now->pinned[now->releases[i].particles[j]] = false;
 }
 
+static bool lets_go(const ck_Model *model, int frame) {
+    for (int i = 0; i < model->release_count; i++)
+        if (model->releases[i].frame == frame) return true;
+    return false;
+}
+
 static double next_jump(const ck_Model *model, double time) {
     double next = INFINITY;
     for (int i = 0; i < model->path_count; i++) next = fmin(next, ck_path_next_jump(&model->paths[i], time));
@@ -78,7 +137,8 @@ static double next_jump(const ck_Model *model, double time) {
 }
 
 // From one frame to the next, in pieces between which what moves pins jumps: so it keeps its order.
-static void walk_frame(Walk *walk, int frame, int substeps) {
+//   begins  it is the first, or pins were let go
+static void walk_frame(Walk *walk, int frame, int substeps, bool begins) {
     const ck_Model *model = &walk->now;
     const double end = (frame + 1) * model->step;
     for (double time = frame * model->step; time < end * (1 - 1e-15) && !walk->has_failed;) {
@@ -87,19 +147,31 @@ static void walk_frame(Walk *walk, int frame, int substeps) {
         const bool is_whole = until == end && time == frame * model->step;
         const int steps = is_whole ? substeps : (int)ceil(substeps * (until - time) / model->step);
         const double dt = is_whole ? model->step / substeps : (until - time) / steps;
+        if (walk->touches && (begins || time > frame * model->step)) {
+            double *velocity = walk->y + 3 * (size_t)model->particle_count;
+            walk->is_wedged |= !ck_touches_begin(walk->touches, time, walk->y, velocity);
+            push(walk, time, 1, walk->y);
+            ck_touches_settle(walk->touches, time, walk->y, velocity, walk->free);
+        }
         // where a pin's speed jumps, bars jerk
         if (walk->bars && model->driven_count) {
             ck_driven_place(model, time, 1, walk->y, walk->y + 3 * (size_t)model->particle_count);
             walk->has_failed |= !ck_bars_project(walk->bars, walk->y, walk->y + 3 * (size_t)model->particle_count);
         }
-        for (int i = 0; i < steps && !ck_child_interrupted && !walk->has_failed; i++)
-            runge_kutta(walk, time + i * dt, dt);
+        if (walk->touches)
+            walk_events(walk, time, until, dt);
+        else
+            for (int i = 0; i < steps && !ck_child_interrupted && !walk->has_failed; i++) {
+                push(walk, time + i * dt, 1, walk->y);
+                runge_kutta(walk, time + i * dt, dt);
+            }
         time = until;
     }
 }
 
 static void end_walk(Walk *walk) {
     ck_bars_destroy(walk->bars);
+    ck_touches_destroy(walk->touches);
     free(walk->now.pinned);
     free(walk->now.springs);
     free(walk->y);
@@ -108,20 +180,23 @@ static void end_walk(Walk *walk) {
 static ck_Status start_walk(Walk *walk, const ck_Model *model, ck_Error *error) {
     const size_t count = (size_t)model->particle_count, whole = 6 * count;
     *walk = (Walk){.now = *model};
-    walk->y = malloc(6 * whole * sizeof(double));
+    walk->y = malloc(9 * whole * sizeof(double));
     walk->now.pinned = malloc(count * sizeof(bool));
     walk->now.springs = malloc(((size_t)model->spring_count + 1) * sizeof(ck_Spring));
     if (!walk->y || !walk->now.pinned || !walk->now.springs)
         return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
     walk->stage = walk->y + whole;
     walk->k = walk->y + 2 * whole;
+    walk->begun = walk->y + 6 * whole;
+    walk->free = walk->y + 8 * whole;
     memcpy(walk->now.pinned, model->pinned, count * sizeof(bool));
     walk->now.spring_count = 0;
     for (int i = 0; i < model->spring_count; i++)
         if (isfinite(model->springs[i].stiffness)) walk->now.springs[walk->now.spring_count++] = model->springs[i];
     memcpy(walk->y, model->position, 3 * count * sizeof(double));
     memcpy(walk->y + 3 * count, model->velocity, 3 * count * sizeof(double));
-    return ck_bars_create(&walk->bars, model, walk->now.pinned, error);
+    ck_Status status = ck_bars_create(&walk->bars, model, walk->now.pinned, error);
+    return status ? status : ck_touches_create(&walk->touches, model, walk->now.pinned, error);
 }
 
 ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
@@ -133,9 +208,13 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
     if (!status && nudge > 0) nudge_start(model, walk.y, nudge, seed);
     if (!status && walk.bars) walk.has_failed = !ck_bars_project(walk.bars, walk.y, walk.y + whole / 2);
     for (int frame = 0; frame <= model->frame_count && !status; frame++) {
+        const bool begins = frame == 1 || (frame && lets_go(model, frame - 1));
         if (frame) let_go(&walk.now, frame - 1);
-        if (frame) walk_frame(&walk, frame - 1, substeps);
+        if (frame) walk_frame(&walk, frame - 1, substeps, begins);
         status = ck_child_check(error);
+        if (walk.is_wedged && !status)
+            status = ck_fail(error, CK_REFUSED, "%s: a particle comes between two colliders by t = %.3g s", model->name,
+                             frame * model->step);
         bool finite = !walk.has_failed;
         for (size_t j = 0; j < whole; j++) finite &= isfinite(walk.y[j]) != 0;
         if (!finite) break;
@@ -166,17 +245,30 @@ static double disagreement(const ck_ReferencePath *path, const ck_Model *model) 
     return largest;
 }
 
-// How far the finest path so far can be trusted.
-static ck_Status find_horizon(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
+// A path and one from a nudged start, side by side.
+typedef struct Pair {
+    ck_ReferencePath *path;
+    const ck_Model *model;
     ck_Trajectory nudged;
-    double nudge = CK_REFERENCE_NUDGE * model->size;
-    ck_Status status = ck_reference_integrate(&nudged, model, path->substeps, nudge, 1, error);
-    int frames = nudged.frame_count < path->fine.frame_count ? nudged.frame_count : path->fine.frame_count;
+} Pair;
+
+static ck_Status integrate_one(void *context, int index, ck_Error *error) {
+    Pair *pair = context;
+    const double nudge = index ? CK_REFERENCE_NUDGE * pair->model->size : 0;
+    return ck_reference_integrate(index ? &pair->nudged : &pair->path->fine, pair->model, pair->path->substeps, nudge,
+                                  1, error);
+}
+
+// The finest path so far, and how far it can be trusted.
+static ck_Status integrate_with_horizon(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
+    Pair pair = {.path = path, .model = model};
+    ck_Status status = ck_parallel(2, 0, integrate_one, &pair, error);
+    int frames = pair.nudged.frame_count < path->fine.frame_count ? pair.nudged.frame_count : path->fine.frame_count;
     path->horizon = 0;
     while (!status && path->horizon + 1 < frames &&
-           distance(model, &path->fine, &nudged, path->horizon + 1) < GROWTH * CK_REFERENCE_NUDGE)
+           distance(model, &path->fine, &pair.nudged, path->horizon + 1) < GROWTH * CK_REFERENCE_NUDGE)
         path->horizon++;
-    ck_trajectory_free(&nudged);
+    ck_trajectory_free(&pair.nudged);
     return status;
 }
 
@@ -202,20 +294,16 @@ double ck_reference_work(const ck_Model *model) {
     return 4.0 * substeps * model->frame_count * (bar * model->spring_count + model->particle_count);
 }
 
-ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
-    *path = (ck_ReferencePath){0};
-    if (model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE))
-        return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no colliders", model->name);
-    if ((model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model))
-        return ck_fail(error, CK_REFUSED, "%s: its bars do not start at their lengths: how they snap is not known",
-                       model->name);
-    ck_Status status = first_substeps(model, &path->substeps);
-    if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
-        return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g steps", model->name, MAX_STEPS);
-    if (!status) status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
+static double wanted_agreement(const ck_Model *model) {
+    if (model->collider_count) return AGREEMENT_IN_CONTACT;
+    return model->terms & (CK_TERM_WIND | CK_TERM_PULL_ONLY) ? AGREEMENT_WITH_KINKS : AGREEMENT;
+}
+
+// Halves the step from path's substeps on until two paths agree up to their horizon, or to the last frame.
+static ck_Status refine(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
+    ck_Status status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
     path->agreement = INFINITY;
-    const bool has_kinks = model->terms & (CK_TERM_WIND | CK_TERM_PULL_ONLY);
-    while (!status && path->agreement > (has_kinks ? AGREEMENT_WITH_KINKS : AGREEMENT)) {
+    while (!status && path->agreement > wanted_agreement(model)) {
         if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
             return ck_fail(error, CK_REFUSED, "%s: two references still differ by %.2g of the size at %d steps a frame",
                            model->name, path->agreement, path->substeps);
@@ -223,10 +311,53 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
         path->coarse = path->fine;
         path->fine = (ck_Trajectory){0};
         path->substeps *= 2;
-        status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
-        if (!status) status = find_horizon(path, model, error);
+        status = integrate_with_horizon(path, model, error);
         path->agreement = disagreement(path, model);
     }
+    return status;
+}
+
+typedef struct Whole {
+    ck_ReferencePath *path;
+    const ck_Model *model;
+} Whole;
+
+static ck_Status integrate_whole(void *context, int index, ck_Error *error) {
+    const Whole *whole = context;
+    ck_Trajectory *path = index ? &whole->path->coarse : &whole->path->fine;
+    ck_trajectory_free(path);
+    return ck_reference_integrate(path, whole->model, whole->path->substeps / (index ? 2 : 1), 0, 0, error);
+}
+
+static ck_Status check_model(const ck_Model *model, const ck_ReferencePath *path, ck_Error *error) {
+    if (model->collider_count && (model->terms & CK_TERM_RIGID))
+        return ck_fail(error, CK_REFUSED, "%s: the reference integrator has no rigid bars in contact", model->name);
+    if ((model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model))
+        return ck_fail(error, CK_REFUSED, "%s: its bars do not start at their lengths: how they snap is not known",
+                       model->name);
+    if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
+        return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g steps", model->name, MAX_STEPS);
+    return CK_OK;
+}
+
+// The first part of a path in contact that is refined: its horizon is often short, and beyond it steps need not agree.
+#define FIRST_PART 8
+
+ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error) {
+    *path = (ck_ReferencePath){0};
+    ck_Status status = first_substeps(model, &path->substeps);
+    if (!status) status = check_model(model, path, error);
+    ck_Model part = *model;
+    if (model->collider_count && model->frame_count > 10 * FIRST_PART) part.frame_count /= FIRST_PART;
+    while (!status) {
+        status = refine(path, &part, error);
+        if (status || part.frame_count == model->frame_count || path->horizon < part.frame_count) break;
+        part.frame_count = part.frame_count > model->frame_count / 2 ? model->frame_count : 2 * part.frame_count;
+        path->substeps /= 2;
+        ck_reference_path_free(path);
+    }
+    if (!status && part.frame_count < model->frame_count)
+        status = ck_parallel(2, 0, integrate_whole, &(Whole){path, model}, error);
     if (!status && path->horizon < 1)
         return ck_fail(error, CK_REFUSED, "%s: two references part within the first frame", model->name);
     return status;

@@ -28,9 +28,10 @@ typedef struct ck_ReferencePath {
     double agreement;           // largest distance of fine and coarse up to the horizon, / size
 } ck_ReferencePath;
 
-// Halves the step until two paths agree to 1e-9 of the size up to the horizon, to 1e-6 where forces have kinks.
-// Errors: CK_NO_MEMORY; CK_REFUSED where the model has colliders or bars that do not start at their
-// lengths, or no affordable step agrees.
+// Halves the step until two paths agree to 1e-9 of the size up to the horizon, to 1e-6 where forces have kinks, and to
+// 1e-5 in contact.
+// Errors: CK_NO_MEMORY; CK_REFUSED where the model has bars in contact, or bars that do not start at their lengths,
+// where a particle comes between two colliders, or no affordable step agrees.
 // Free with ck_reference_path_free in any case.
 ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model, ck_Error *error);
 void ck_reference_path_free(ck_ReferencePath *path);

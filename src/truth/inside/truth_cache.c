@@ -17,6 +17,13 @@ typedef struct Header {
     int32_t path_count, particle_count, horizon, frame_counts[CK_TRUTH_MAX_PATHS], unused;
 } Header;
 
+static uint64_t hash_path(uint64_t value, const ck_Path *path) {
+    const double numbers[] = {path->kind,      path->from,      path->to,       path->vector[0],
+                              path->vector[1], path->vector[2], path->frequency};
+    value = ck_hash(value, numbers, sizeof numbers);
+    return ck_hash(value, path->points, (size_t)path->point_count * sizeof *path->points);
+}
+
 uint64_t ck_truth_cache_hash(const ck_Model *model) {
     size_t count = (size_t)model->particle_count;
     uint64_t value = ck_hash(CK_HASH_START, model->truth, strlen(model->truth));
@@ -45,11 +52,16 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         value = ck_hash(value, wind->faces, (size_t)wind->face_count * sizeof *wind->faces);
     }
     for (int i = 0; i < model->driven_count; i++) {
-        const ck_Path *path = model->driven[i].path;
-        const double numbers[] = {model->driven[i].particle, path->kind,      path->from,      path->to,
-                                  path->vector[0],           path->vector[1], path->vector[2], path->frequency};
+        value = ck_hash(value, &model->driven[i].particle, sizeof model->driven[i].particle);
+        value = hash_path(value, model->driven[i].path);
+    }
+    for (int i = 0; i < model->collider_count; i++) {
+        const ck_Collider *collider = &model->colliders[i];
+        const double numbers[] = {collider->shape, collider->radius, collider->restitution, collider->friction};
         value = ck_hash(value, numbers, sizeof numbers);
-        value = ck_hash(value, path->points, (size_t)path->point_count * sizeof *path->points);
+        value = ck_hash(value, collider->point, sizeof collider->point);
+        value = ck_hash(value, collider->normal, sizeof collider->normal);
+        if (collider->path) value = hash_path(value, collider->path);
     }
     for (int i = 0; i < model->release_count; i++) {
         const ck_Release *release = &model->releases[i];

@@ -1,0 +1,390 @@
+#include "touch.h"
+
+#include "collider.h"
+#include "vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// A particle that turns only begins a step there.
+typedef enum Event { NO_EVENT, IMPACT, LIFT, STOP, SLIP, TURN } Event;
+
+// What a particle touches.
+typedef struct Touch {
+    int collider;  // −1: nothing
+    bool sticks;   // held by friction
+    double way[3]; // unit: the direction in which it slid at the start of the step; 0: it did not
+    Event event;
+    int hit;     // of an impact
+    double when; // share of the step
+} Touch;
+
+struct ck_Touches {
+    const ck_Model *model;
+    const bool *pinned;
+    Touch *touch;                               // [n]
+    double rest;                                // m/s: CK_TOUCH_REST
+    double thin;                                // m: what coordinates resolve
+    double time, dt;                            // s, of the start of a step, and its length
+    double *position, *velocity, *acceleration; // [3*n] there
+};
+
+// A collider at a time, and where a particle is to it.
+typedef struct Surface {
+    ck_Collider collider;
+    double velocity[3], acceleration[3];
+    double normal[3], gap;
+} Surface;
+
+static Surface surface_at(const ck_Touches *touches, int collider, double time, int side, const double *point) {
+    Surface surface;
+    surface.collider =
+        ck_collider_at(&touches->model->colliders[collider], time, side, surface.velocity, surface.acceleration);
+    surface.gap = ck_collider_gap(&surface.collider, point, surface.normal);
+    return surface;
+}
+
+ck_Status ck_touches_create(ck_Touches **out, const ck_Model *model, const bool *pinned, ck_Error *error) {
+    *out = NULL;
+    if (!model->collider_count) return CK_OK;
+    const size_t count = (size_t)model->particle_count;
+    ck_Touches *touches = calloc(1, sizeof *touches);
+    double field[3];
+    ck_model_mean_field(model, field);
+    if (touches) {
+        *touches = (ck_Touches){.model = model,
+                                .pinned = pinned,
+                                .rest = CK_TOUCH_REST * sqrt(ck_length(field) * model->size),
+                                .thin = 1e-13 * model->size};
+        touches->touch = calloc(count, sizeof *touches->touch);
+        touches->position = malloc(9 * count * sizeof(double));
+    }
+    if (!touches || !touches->touch || !touches->position) {
+        ck_touches_destroy(touches);
+        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    }
+    touches->velocity = touches->position + 3 * count;
+    touches->acceleration = touches->position + 6 * count;
+    for (size_t i = 0; i < count; i++) {
+        touches->touch[i].collider = -1;
+        touches->thin = fmax(touches->thin, 1e-15 * ck_length(model->position + 3 * i));
+    }
+    *out = touches;
+    return CK_OK;
+}
+
+void ck_touches_destroy(ck_Touches *touches) {
+    if (!touches) return;
+    free(touches->touch);
+    free(touches->position);
+    free(touches);
+}
+
+// The acceleration along the normal that keeps it on the surface, less what it would have: how hard it is pressed on,
+// per mass. along: its velocity to the surface's, tangential.
+static double pressing(const Surface *surface, const double *velocity, const double *acceleration, double *along) {
+    double relative[3], turn = 0;
+    ck_subtract(relative, velocity, surface->velocity);
+    ck_tangential(along, relative, surface->normal);
+    // it goes round a ball
+    if (surface->collider.shape == CK_SPHERE) turn = -ck_dot(along, along) / surface->collider.radius;
+    return turn + ck_dot(surface->acceleration, surface->normal) - ck_dot(acceleration, surface->normal);
+}
+
+// What pushes a particle along a surface, m/s², and what friction does at most.
+typedef struct Push {
+    double along[3], friction, press;
+} Push;
+
+//   slip  out: its velocity to the surface's, tangential
+static Push push_of(const Surface *surface, const double *velocity, const double *acceleration, double *slip) {
+    Push push;
+    double relative[3];
+    push.press = pressing(surface, velocity, acceleration, slip);
+    push.friction = surface->collider.friction * fmax(0, push.press);
+    ck_subtract(relative, acceleration, surface->acceleration);
+    ck_tangential(push.along, relative, surface->normal);
+    return push;
+}
+
+static void scale_to_one(double *vector) {
+    const double length = ck_length(vector);
+    for (int axis = 0; axis < 3; axis++) vector[axis] = length > 0 ? vector[axis] / length : 0;
+}
+
+// The direction that friction acts against: that of sliding; where it has none yet, that in which it is pushed. A slow
+// one turns into the push at once, in a time v/friction that no step follows: below friction·dt it goes over to it. One
+// that has turned round since the start of the step keeps the way it had, until the event of that.
+static void direction(const ck_Touches *touches, const Touch *touch, const double *along, const Push *push,
+                      double *way) {
+    const double speed = ck_length(along), slow = push->friction * touches->dt - speed;
+    double pushed[3];
+    memcpy(pushed, push->along, sizeof pushed);
+    scale_to_one(pushed);
+    if (speed <= touches->rest && ck_dot(pushed, pushed) > 0) {
+        memcpy(way, pushed, sizeof pushed);
+    } else if (ck_dot(touch->way, touch->way) > 0 && ck_dot(along, touch->way) <= 0) {
+        memcpy(way, touch->way, 3 * sizeof(double));
+    } else {
+        memcpy(way, along, 3 * sizeof(double));
+        if (slow > 0 && ck_dot(along, pushed) > 0) ck_add_scaled(way, slow, pushed);
+        scale_to_one(way);
+    }
+}
+
+void ck_touches_accelerate(ck_Touches *touches, double time, int side, const double *position, const double *velocity,
+                           double *acceleration) {
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        const Touch *touch = &touches->touch[i];
+        double along[3], way[3], *a = acceleration + 3 * i;
+        if (touch->collider < 0) continue;
+        const Surface surface = surface_at(touches, touch->collider, time, side, position + 3 * i);
+        if (touch->sticks) {
+            memcpy(a, surface.acceleration, sizeof surface.acceleration);
+            continue;
+        }
+        const Push push = push_of(&surface, velocity + 3 * i, a, along);
+        direction(touches, touch, along, &push, way);
+        ck_add_scaled(a, push.press, surface.normal);
+        ck_add_scaled(a, -push.friction, way);
+    }
+}
+
+void ck_touches_start(ck_Touches *touches, double time, double dt, const double *position, const double *velocity,
+                      const double *acceleration) {
+    const size_t bytes = 3 * sizeof(double) * (size_t)touches->model->particle_count;
+    touches->time = time;
+    touches->dt = dt;
+    memcpy(touches->position, position, bytes);
+    memcpy(touches->velocity, velocity, bytes);
+    memcpy(touches->acceleration, acceleration, bytes);
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        Touch *touch = &touches->touch[i];
+        memset(touch->way, 0, sizeof touch->way);
+        if (touch->collider < 0 || touch->sticks) continue;
+        const Surface surface = surface_at(touches, touch->collider, time, 1, position + 3 * i);
+        double along[3], way[3];
+        const Push push = push_of(&surface, velocity + 3 * i, acceleration + 3 * i, along);
+        direction(touches, touch, along, &push, way);
+        memcpy(touch->way, way, sizeof way);
+    }
+}
+
+// The least share of a step between two events of a particle that is on the verge of one: it may lift and come back, or
+// slip and stop, without end. By then it has a speed of that squared of what a step's change of its acceleration makes.
+#define LEAST (1.0 / 32)
+
+// The gap to a collider after a share s of the step, by Hermite's cubic between its ends.
+static double gap_at(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
+                     const double *end_velocity, double s) {
+    const double *x = touches->position + 3 * particle, *v = touches->velocity + 3 * particle;
+    double point[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const double m = dt * v[axis], n = dt * end_velocity[axis], way = end[axis] - x[axis];
+        point[axis] = x[axis] + s * (m + s * (3 * way - 2 * m - n + s * (m + n - 2 * way)));
+    }
+    return surface_at(touches, collider, touches->time + s * dt, 1, point).gap;
+}
+
+// True where it has speed into the surface at the start of the step.
+static bool comes_in(const ck_Touches *touches, int particle, int collider) {
+    const Surface surface = surface_at(touches, collider, touches->time, 1, touches->position + 3 * particle);
+    double relative[3];
+    ck_subtract(relative, touches->velocity + 3 * particle, surface.velocity);
+    return ck_dot(relative, surface.normal) < -touches->rest;
+}
+
+// The share of the step at which it last comes in from outside; one that is never outside comes in at once.
+static double impact_share(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
+                           const double *end_velocity) {
+    double inside = 1, outside = 1;
+    do outside -= 1.0 / 16;
+    while (outside > 0 && gap_at(touches, particle, collider, dt, end, end_velocity, outside) <= 0);
+    const double start = outside > 0 ? INFINITY : gap_at(touches, particle, collider, dt, end, end_velocity, 0);
+    if (start < -touches->thin) return 0;
+    // from the surface itself it first leaves, if at all
+    if (start <= touches->thin) {
+        for (outside = 1.0 / 32; outside > 1e-9; outside *= 0.25)
+            if (gap_at(touches, particle, collider, dt, end, end_velocity, outside) > 0) break;
+        if (outside <= 1e-9) return comes_in(touches, particle, collider) ? 0 : LEAST;
+    }
+    for (;;) {
+        const double middle = 0.5 * (outside + inside);
+        if (middle <= outside || middle >= inside) return outside;
+        if (gap_at(touches, particle, collider, dt, end, end_velocity, middle) > 0)
+            outside = middle;
+        else
+            inside = middle;
+    }
+}
+
+static void note(Touch *touch, Event event, int hit, double when) {
+    if (when > 1 || when >= touch->when) return;
+    touch->event = event;
+    touch->hit = hit;
+    touch->when = when;
+}
+
+// Where a number falls through zero between the ends of a step.
+static double crossing(double start, double end) {
+    return start > 0 ? start / (start - end) : 0;
+}
+
+// What friction can hold less what it must.
+static double margin(const Push *push) {
+    return push->press < 0 ? push->press : push->friction - ck_length(push->along);
+}
+
+// When a particle that slides stops, where push and friction stay as they are: T = v·(q + f·cos θ)/(q² − f²), by
+// v' = f·cos θ − q and v·θ' = −f·sin θ, as it turns into the push while it slows down.
+static double stop_time(const double *along, const Push *push) {
+    const double speed = ck_length(along), f = ck_length(push->along), q = push->friction;
+    if (!(q > f)) return INFINITY;
+    return (speed * q + ck_dot(push->along, along)) / ((q - f) * (q + f));
+}
+
+// The share of the step after which it stops: of what push and friction are in the middle of that time.
+static double stop_share(const double *along, const Push *start, const Push *end, double dt) {
+    double time = stop_time(along, start);
+    for (int round = 0; round < 3 && time < 2 * dt; round++) {
+        const double share = 0.5 * time / dt;
+        Push mean = {.friction = start->friction + share * (end->friction - start->friction)};
+        for (int axis = 0; axis < 3; axis++)
+            mean.along[axis] = start->along[axis] + share * (end->along[axis] - start->along[axis]);
+        time = stop_time(along, &mean);
+    }
+    return time / dt;
+}
+
+// The event of a particle that touches already: it lifts, stops or slips.
+static void note_change(ck_Touches *touches, int particle, double dt, const double *position, const double *velocity,
+                        const double *acceleration) {
+    Touch *touch = &touches->touch[particle];
+    const int at = 3 * particle;
+    const Surface start = surface_at(touches, touch->collider, touches->time, 1, touches->position + at);
+    const Surface end = surface_at(touches, touch->collider, touches->time + dt, -1, position + at);
+    double slip[3], left[3];
+    const Push before = push_of(&start, touches->velocity + at, touches->acceleration + at, slip);
+    const Push after = push_of(&end, velocity + at, acceleration + at, left);
+    if (after.press < 0) note(touch, LIFT, 0, crossing(before.press, after.press));
+    if (touch->sticks) {
+        if (margin(&after) < 0) note(touch, SLIP, 0, crossing(margin(&before), margin(&after)));
+        return;
+    }
+    if (!(end.collider.friction > 0)) return;
+    if (ck_length(slip) > touches->rest) note(touch, STOP, 0, stop_share(slip, &before, &after, dt));
+    const double on = ck_dot(slip, touch->way), back = ck_dot(left, touch->way);
+    if (back <= 0) note(touch, on > touches->rest ? TURN : STOP, 0, fmax(LEAST, crossing(on, back)));
+}
+
+double ck_touches_first_event(ck_Touches *touches, double dt, const double *position, const double *velocity,
+                              const double *acceleration) {
+    double first = 2;
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        Touch *touch = &touches->touch[i];
+        touch->event = NO_EVENT;
+        touch->when = 2;
+        if (touches->pinned[i]) continue;
+        if (touch->collider >= 0) note_change(touches, i, dt, position, velocity, acceleration);
+        for (int c = 0; c < touches->model->collider_count; c++) {
+            if (c == touch->collider) continue;
+            if (surface_at(touches, c, touches->time + dt, -1, position + 3 * i).gap < -touches->thin)
+                note(touch, IMPACT, c, impact_share(touches, i, c, dt, position + 3 * i, velocity + 3 * i));
+        }
+        first = fmin(first, touch->when);
+    }
+    // those at the same time are one event
+    for (int i = 0; i < touches->model->particle_count; i++)
+        if (touches->touch[i].when > first + 1e-9) touches->touch[i].event = NO_EVENT;
+    return first;
+}
+
+static void put(const Surface *surface, double *x, double *v) {
+    double relative[3];
+    ck_add_scaled(x, -surface->gap, surface->normal);
+    ck_subtract(relative, v, surface->velocity);
+    ck_add_scaled(v, -ck_dot(relative, surface->normal), surface->normal);
+}
+
+void ck_touches_project(ck_Touches *touches, double time, double *position, double *velocity) {
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        const Touch *touch = &touches->touch[i];
+        if (touch->collider < 0) continue;
+        const Surface surface = surface_at(touches, touch->collider, time, -1, position + 3 * i);
+        put(&surface, position + 3 * i, velocity + 3 * i);
+        if (touch->sticks) memcpy(velocity + 3 * i, surface.velocity, sizeof surface.velocity);
+    }
+}
+
+// e times the speed back, and friction's share of the impulse. What does not leave again rests there.
+static void strike(ck_Touches *touches, int particle, int collider, double time, double *x, double *v) {
+    Touch *touch = &touches->touch[particle];
+    const Surface surface = surface_at(touches, collider, time, 1, x);
+    double relative[3], along[3];
+    ck_add_scaled(x, -surface.gap, surface.normal);
+    ck_subtract(relative, v, surface.velocity);
+    const double speed = -ck_dot(relative, surface.normal), back = surface.collider.restitution * fmax(0, speed);
+    const bool rests = back <= touches->rest;
+    const double jump = fmax(0, speed) + (rests ? 0 : back);
+    ck_tangential(along, relative, surface.normal);
+    const double sliding = ck_length(along);
+    if (speed > 0) ck_add_scaled(v, jump, surface.normal);
+    if (sliding > 0) ck_add_scaled(v, -fmin(1, surface.collider.friction * jump / sliding), along);
+    touch->collider = rests ? collider : -1;
+    touch->sticks = false;
+    touch->event = rests ? STOP : NO_EVENT;
+}
+
+bool ck_touches_change(ck_Touches *touches, double time, double *position, double *velocity) {
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        Touch *touch = &touches->touch[i];
+        double *x = position + 3 * i, *v = velocity + 3 * i;
+        if (touch->event == IMPACT) {
+            if (touch->collider >= 0) return false;
+            strike(touches, i, touch->hit, time, x, v);
+        } else if (touch->event == LIFT) {
+            touch->collider = -1;
+        } else if (touch->event == STOP || touch->event == SLIP) {
+            const Surface surface = surface_at(touches, touch->collider, time, 1, x);
+            put(&surface, x, v);
+            if (touch->event == STOP) memcpy(v, surface.velocity, sizeof surface.velocity);
+            touch->sticks = false;
+        }
+    }
+    return true;
+}
+
+void ck_touches_settle(ck_Touches *touches, double time, const double *position, double *velocity,
+                       const double *acceleration) {
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        Touch *touch = &touches->touch[i];
+        double along[3], *v = velocity + 3 * i;
+        const bool comes_to_rest = touch->event == STOP;
+        touch->event = NO_EVENT;
+        if (!comes_to_rest) continue;
+        const Surface surface = surface_at(touches, touch->collider, time, 1, position + 3 * i);
+        const Push push = push_of(&surface, v, acceleration + 3 * i, along);
+        const bool is_still = ck_length(along) <= 1e-3 * touches->rest;
+        touch->sticks = push.press > 0 && is_still && push.friction > 0 && margin(&push) >= 0;
+        if (!(push.press > 0)) touch->collider = -1;
+        if (touch->sticks) memcpy(v, surface.velocity, sizeof surface.velocity);
+    }
+}
+
+bool ck_touches_begin(ck_Touches *touches, double time, double *position, double *velocity) {
+    for (int i = 0; i < touches->model->particle_count; i++) {
+        Touch *touch = &touches->touch[i];
+        double *x = position + 3 * i, *v = velocity + 3 * i;
+        touch->collider = -1;
+        touch->event = NO_EVENT;
+        for (int c = 0; c < touches->model->collider_count && !touches->pinned[i]; c++) {
+            const Surface surface = surface_at(touches, c, time, 1, x);
+            double relative[3];
+            ck_subtract(relative, v, surface.velocity);
+            if (surface.gap > 1e3 * touches->thin || ck_dot(relative, surface.normal) > touches->rest) continue;
+            if (touch->collider >= 0) return false;
+            strike(touches, i, c, time, x, v);
+        }
+    }
+    return true;
+}
