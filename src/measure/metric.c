@@ -1,6 +1,7 @@
 #include "metric.h"
 
 #include "contact_metric.h"
+#include "force_metric.h"
 #include "springs.h"
 #include "swing_metric.h"
 #include "vector.h"
@@ -36,6 +37,13 @@ static double sag_at(const ck_Model *model, const ck_Trajectory *trajectory, int
         if (!ck_model_is_held(model, i)) bottom = fmax(bottom, ck_dot(position + 3 * i, down));
     }
     return isfinite(bottom) ? (bottom - top) / model->size : NAN;
+}
+
+static double sag_peak_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+    double deepest = NAN;
+    for (int frame = 0; frame < trajectory->frame_count; frame++)
+        deepest = fmax(deepest, sag_at(model, trajectory, frame, reference));
+    return deepest;
 }
 
 static double stretch_max_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
@@ -244,6 +252,14 @@ static const ck_Metric metrics[] = {
     {"stretch_max", "1", "Largest spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_max_at},
     {"stretch_rms", "1", "Root mean square spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_rms_at},
     {"stretch_peak", "1", "Largest spring strain of the whole run", CK_TRUTH_OF_STATE, .over = stretch_peak_over},
+    {"sag_peak", "1", "Largest drop of a free particle of the whole run / size", CK_TRUTH_OF_STATE,
+     .over = sag_peak_over},
+    {"tension_peak", "N", "Largest pull of a spring of the whole run, by the scene's stiffness", CK_TRUTH_OF_STATE,
+     .over = ck_metric_tension_peak_over},
+    {"pin_force", "1", "Force of springs and hinges on the pins at the end / weight", CK_TRUTH_OF_STATE,
+     .at = ck_metric_pin_force_at},
+    {"pin_force_peak", "1", "Largest force on the pins of the whole run / weight", CK_TRUTH_OF_STATE,
+     .over = ck_metric_pin_force_peak_over},
     {"position_rms", "1", "Root mean square distance to the truth / size", CK_TRUTH_ZERO, .at = position_rms_at,
      .over = position_rms_over, .between = position_rms_between, .to_horizon = true},
     {"energy_drift", "1", "Energy gained, or lost beyond the scene's own damping / what it turns over", CK_TRUTH_ZERO,
@@ -264,6 +280,10 @@ static const ck_Metric metrics[] = {
      .over = jitter_over},
     {"penetration_max", "1", "Deepest a particle was inside a collider / spacing", CK_TRUTH_ZERO,
      .at = ck_metric_penetration_at, .over = ck_metric_penetration_over},
+    {"penetration_time", "s", "Time for which a particle is deeper in a collider than a hundredth of the spacing",
+     CK_TRUTH_ZERO, .over = ck_metric_penetration_time_over},
+    {"contact_share", "1", "Share of free particles on a collider at the end, to a hundredth of the spacing",
+     CK_TRUTH_OF_STATE, .at = ck_metric_contact_share_at},
     {"rest_height", "1", "Smallest gap between a particle and a collider / spacing", CK_TRUTH_OF_STATE,
      .at = ck_metric_height_at},
     {"restitution", "1", "Speed after / before the first bounce off a plane", CK_TRUTH_OF_STATE,

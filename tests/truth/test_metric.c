@@ -146,14 +146,64 @@ static void test_moving(void **state) {
     // let go unstretched it bounces to twice the strain at rest
     double rest = 60 * 9.81 / 560.5714285714286 / 20;
     assert_near("peak", metric_of(&fixture, &path, "stretch_peak"), 2 * rest, 1e-4 * rest);
+    // and pulls with twice its weight, which is what the pin holds then; a frame may be half a one off the turn
+    assert_near("tension", metric_of(&fixture, &path, "tension_peak"), 2 * 60 * 9.81, 1e-3 * 60 * 9.81);
+    assert_near("pin", metric_of(&fixture, &path, "pin_force_peak"), 2, 1e-3);
+    assert_near("deepest", metric_of(&fixture, &path, "sag_peak"), (20 + 40 * rest) / 20, 1e-4 * rest);
+    ck_trajectory_free(&path);
+    fixture_free_truth(&fixture);
+}
+
+// At rest pins hold the weight, hinges' share with it: a strip clamped at its end, a net by two corners.
+static void test_pins_hold_the_weight(void **state) {
+    (void)state;
+    static const char *const cases[] = {
+        "name: strip\nrope: {particles: 12, spacing: 0.05, mass: 0.1, along: [1, 0, 0]}\nsprings: {stiffness: 3000}\n"
+        "bending: {stiffness: 0.05}\npins: ['0', '1']\ngravity: [0, -9.81, 0]\ndrag: 4\n"
+        "time: {duration: 3, fps: 60}\ntruth: equilibrium\n",
+        "name: net\ncloth: {rows: 6, columns: 6, spacing: 0.1, mass: 0.2, down: [0, 0, 1]}\n"
+        "springs: {stiffness: 200, shear: 100}\npins: [top_left, top_right]\ngravity: [1, -9.81, 0]\ndrag: 4\n"
+        "time: {duration: 3, fps: 60}\ntruth: equilibrium\n",
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        TruthFixture fixture;
+        ck_Error error = {0};
+        fixture_load_truth(&fixture, cases[i]);
+        if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+        // forces are balanced to 1e-10 of the load
+        assert_near("held", ck_metric_truth(ck_metric_find("pin_force"), &fixture.model, &fixture.truth.reference), 1,
+                    1e-9);
+        fixture_free_truth(&fixture);
+    }
+}
+
+// A cloth that lies on the floor is all on it; one that is moved into it by three spacings is inside as long.
+static void test_on_the_floor(void **state) {
+    (void)state;
+    TruthFixture fixture;
+    ck_Trajectory path;
+    fixture_load_truth(&fixture, "name: floor\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.1, down: [0, 0, 1]}\n"
+                                 "springs: {stiffness: 50}\ngravity: [0, -9.81, 0]\ntime: {duration: 1, fps: 10}\n"
+                                 "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]\ntruth: rest\n");
+    fixture_run(&path, &fixture.model, ck_engine_find("native-verlet"), NULL, NULL);
+    assert_near("share", metric_of(&fixture, &path, "contact_share"), 1, 0);
+    assert_near("inside", metric_of(&fixture, &path, "penetration_time"), 0, 0);
+    for (int frame = 3; frame < 6; frame++) ck_trajectory_position(&path, frame)[1] = -0.3;
+    assert_near("inside", metric_of(&fixture, &path, "penetration_time"), 0.3, 1e-15);
     ck_trajectory_free(&path);
     fixture_free_truth(&fixture);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_period),       cmocka_unit_test(test_period_in_wind), cmocka_unit_test(test_no_period),
-        cmocka_unit_test(test_energy_drift), cmocka_unit_test(test_sag_of_free),    cmocka_unit_test(test_moving),
+        cmocka_unit_test(test_period),
+        cmocka_unit_test(test_period_in_wind),
+        cmocka_unit_test(test_no_period),
+        cmocka_unit_test(test_energy_drift),
+        cmocka_unit_test(test_sag_of_free),
+        cmocka_unit_test(test_moving),
+        cmocka_unit_test(test_pins_hold_the_weight),
+        cmocka_unit_test(test_on_the_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,13 +14,46 @@ static bool is_pinned_at(const ck_Model *model, int particle, int frame) {
     return true;
 }
 
+// The gap of a particle at a frame to the nearest collider, m; INFINITY where it is pinned then.
+static double gap_of(const ck_Model *model, const double *position, int particle, int frame) {
+    double smallest = INFINITY, normal[3], v[3], a[3];
+    for (int j = 0; j < model->collider_count && !is_pinned_at(model, particle, frame); j++) {
+        const ck_Collider now = ck_collider_at(&model->colliders[j], frame * model->step, -1, v, a);
+        smallest = fmin(smallest, ck_collider_gap(&now, position + 3 * particle, normal));
+    }
+    return smallest;
+}
+
 // the smallest gap of all particles that are free at a frame to all colliders, m
 static double smallest_gap(const ck_Model *model, const double *position, int frame) {
-    double smallest = INFINITY, normal[3];
-    for (int i = 0; i < model->particle_count; i++)
-        for (int j = 0; j < model->collider_count && !is_pinned_at(model, i, frame); j++)
-            smallest = fmin(smallest, ck_collider_gap(&model->colliders[j], position + 3 * i, normal));
+    double smallest = INFINITY;
+    for (int i = 0; i < model->particle_count; i++) smallest = fmin(smallest, gap_of(model, position, i, frame));
     return isfinite(smallest) ? smallest : NAN;
+}
+
+// What counts as on a surface and as deep in it, in spacings: a hundredth.
+#define NEAR 0.01
+
+double ck_metric_penetration_time_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                       const ck_Reference *reference) {
+    int deep = 0;
+    if (!model->collider_count) return NAN;
+    for (int frame = 0; frame < trajectory->frame_count; frame++)
+        deep += ck_metric_penetration_at(model, trajectory, frame, reference) > NEAR;
+    return deep * trajectory->step;
+}
+
+double ck_metric_contact_share_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                                  const ck_Reference *reference) {
+    (void)reference;
+    const double *position = ck_trajectory_position(trajectory, frame);
+    int touching = 0, count = 0;
+    for (int i = 0; i < model->particle_count; i++) {
+        const double gap = gap_of(model, position, i, frame);
+        count += isfinite(gap);
+        touching += gap <= NEAR * model->spacing;
+    }
+    return count ? (double)touching / count : NAN;
 }
 
 double ck_metric_height_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,

@@ -10,6 +10,14 @@ double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *traj
 double ck_metric_penetration_over(const ck_Model *model, const ck_Trajectory *trajectory,
                                   const ck_Reference *reference);
 
+// For how long a particle is deeper than a hundredth of the spacing, s, by the frames at which one is.
+double ck_metric_penetration_time_over(const ck_Model *model, const ck_Trajectory *trajectory,
+                                       const ck_Reference *reference);
+
+// The share of free particles that are no farther from a collider than a hundredth of the spacing.
+double ck_metric_contact_share_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                                  const ck_Reference *reference);
+
 // How high the lowest particle is above its nearest collider / spacing.
 double ck_metric_height_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                            const ck_Reference *reference);
