@@ -1,6 +1,7 @@
 #include "contact.h"
 
 #include "collider.h"
+#include "path.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -13,10 +14,63 @@
 ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double dt, ck_Error *error) {
     *contact = NULL;
     if (!model->collider_count) return CK_OK;
-    *contact = calloc(1, sizeof **contact);
+    // motion stands behind it, so that it is freed with it
+    const bool moves = model->terms & CK_TERM_MOVING_COLLIDERS;
+    *contact = calloc(1, sizeof **contact + (moves ? sizeof(ck_Motion) * (size_t)model->collider_count : 0));
     if (!*contact) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     **contact = (ck_Contact){.model = model, .dt = dt, .slack = 1e-9 * model->spacing};
+    if (moves) (*contact)->motion = (ck_Motion *)(*contact + 1);
+    if (moves) ck_contact_follow(*contact, 0);
     return CK_OK;
+}
+
+void ck_contact_follow(ck_Contact *contact, double time) {
+    contact->elapsed = 0;
+    for (int i = 0; i < contact->model->collider_count && contact->motion; i++) {
+        const ck_Path *path = contact->model->colliders[i].path;
+        ck_Motion *motion = &contact->motion[i];
+        double end[3], none[3], other[3];
+        memset(motion, 0, sizeof *motion);
+        if (!path) continue;
+        ck_path_at(path, time, -1, motion->moved, none, other);
+        ck_path_at(path, time + contact->dt, -1, end, none, other);
+        ck_subtract(motion->velocity, end, motion->moved);
+        for (int axis = 0; axis < 3; axis++) motion->velocity[axis] /= contact->dt;
+    }
+}
+
+// A place and a speed as a collider sees them: where all stay, those of the caller, and else own.
+typedef struct Seen {
+    double *x, *v;
+    double own[2][3];
+} Seen;
+
+// After so much of the substep, s.
+//   moves  a constant of the caller: false costs nothing
+static inline void see(Seen *seen, const ck_Contact *contact, const ck_Collider *collider, const double *x,
+                       const double *v, double elapsed, const bool moves) {
+    // who only looks may be const
+    seen->x = moves ? seen->own[0] : (double *)x;
+    seen->v = moves ? seen->own[1] : (double *)v;
+    if (!moves) return;
+    const ck_Motion *motion = &contact->motion[collider - contact->model->colliders];
+    memcpy(seen->x, x, 3 * sizeof(double));
+    memcpy(seen->v, v, 3 * sizeof(double));
+    ck_add_scaled(seen->x, -1, motion->moved);
+    ck_add_scaled(seen->x, -elapsed, motion->velocity);
+    ck_add_scaled(seen->v, -1, motion->velocity);
+}
+
+// What has become of them there.
+static inline void look_back(const Seen *seen, const ck_Contact *contact, const ck_Collider *collider, double elapsed,
+                             const bool moves, double *x, double *v) {
+    if (!moves) return;
+    const ck_Motion *motion = &contact->motion[collider - contact->model->colliders];
+    memcpy(x, seen->x, 3 * sizeof(double));
+    memcpy(v, seen->v, 3 * sizeof(double));
+    ck_add_scaled(x, 1, motion->moved);
+    ck_add_scaled(x, elapsed, motion->velocity);
+    ck_add_scaled(v, 1, motion->velocity);
 }
 
 static void add_impulse(ck_Contact *contact, double mass, const double *before, const double *after) {
@@ -83,18 +137,22 @@ static void squeeze(const Hold *hold, double *vector) {
 }
 
 // The collider that carries the particle and the normal there; NULL where none does. left: the acceleration it leaves.
-static const ck_Collider *support(const ck_Contact *contact, const double *x, const double *v, const double *a,
-                                  double *normal, double *left) {
+static inline __attribute__((always_inline)) const ck_Collider *support(const ck_Contact *contact, const double *x,
+                                                                        const double *v, const double *a,
+                                                                        double elapsed, const bool moves,
+                                                                        double *normal, double *left) {
     const ck_Collider *carrier = NULL;
     Hold held = {.count = 0};
     memmove(left, a, 3 * sizeof(double));
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
+        Seen seen;
+        see(&seen, contact, collider, x, v, elapsed, moves);
         double out[3];
-        if (ck_collider_gap(collider, x, out) > contact->slack) continue;
+        if (ck_collider_gap(collider, seen.x, out) > contact->slack) continue;
         // leaving, faster than rounding
-        if (ck_dot(v, out) > 1e-12 * ck_length(v)) continue;
-        if (!hold(collider, out, contact->dt, v, left)) continue;
+        if (ck_dot(seen.v, out) > 1e-12 * ck_length(seen.v)) continue;
+        if (!hold(collider, out, contact->dt, seen.v, left)) continue;
         carrier = collider;
         memcpy(normal, out, sizeof out);
         add_normal(&held, out);
@@ -105,7 +163,10 @@ static const ck_Collider *support(const ck_Contact *contact, const double *x, co
 
 void ck_contact_filter(const ck_Contact *contact, const double *x, const double *v, const double *a, double *left) {
     double normal[3];
-    support(contact, x, v, a, normal, left);
+    if (contact->motion)
+        support(contact, x, v, a, contact->elapsed, true, normal, left);
+    else
+        support(contact, x, v, a, 0, false, normal, left);
 }
 
 static void fly(double *x, double *v, const double *a, double time) {
@@ -147,12 +208,16 @@ static void slide(const ck_Collider *carrier, double *x, double *v, const double
     for (int axis = 0; axis < 3; axis++) v[axis] *= scale;
 }
 
-static const ck_Collider *first_hit(const ck_Contact *contact, const double *x, const double *v, const double *a,
-                                    double *time) {
+static inline __attribute__((always_inline)) const ck_Collider *first_hit(const ck_Contact *contact, const double *x,
+                                                                          const double *v, const double *a,
+                                                                          double elapsed, const bool moves,
+                                                                          double *time) {
     const ck_Collider *first = NULL;
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
-        double hit = ck_collider_hit(collider, x, v, a, *time, contact->slack);
+        Seen seen;
+        see(&seen, contact, collider, x, v, elapsed, moves);
+        double hit = ck_collider_hit(collider, seen.x, seen.v, a, *time, contact->slack);
         if (hit <= *time) {
             *time = hit;
             first = collider;
@@ -162,56 +227,87 @@ static const ck_Collider *first_hit(const ck_Contact *contact, const double *x, 
 }
 
 // Strikes every surface that is touched and moved into. Deeper than slack there is only what rounding and starts leave.
-static void strike_touching(const ck_Contact *contact, double *x, double *v, const double *a) {
+static inline __attribute__((always_inline)) void strike_touching(const ck_Contact *contact, double *x, double *v,
+                                                                  const double *a, double elapsed, const bool moves) {
     Hold touched = {.count = 0};
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
-        double normal[3], gap = ck_collider_gap(collider, x, normal);
+        Seen seen;
+        see(&seen, contact, collider, x, v, elapsed, moves);
+        double normal[3], gap = ck_collider_gap(collider, seen.x, normal);
         if (gap > contact->slack) continue;
-        if (gap < 0) ck_add_scaled(x, -gap, normal);
-        strike(contact, collider, normal, v, a);
+        if (gap < 0) ck_add_scaled(seen.x, -gap, normal);
+        strike(contact, collider, normal, seen.v, a);
+        look_back(&seen, contact, collider, elapsed, moves, x, v);
         add_normal(&touched, normal);
     }
     if (touched.count > 1) squeeze(&touched, v);
 }
 
-void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, const double *a) {
+static inline __attribute__((always_inline)) void advance(ck_Contact *contact, double mass, double *x, double *v,
+                                                          const double *a, const bool moves) {
     double left_time = contact->dt, free_flight[3];
     memcpy(free_flight, v, sizeof free_flight);
     ck_add_scaled(free_flight, contact->dt, a);
     for (int event = 0; left_time > 0 && event < MAX_EVENTS; event++) {
-        double normal[3], left[3], time = left_time;
-        strike_touching(contact, x, v, a);
-        const ck_Collider *carrier = support(contact, x, v, a, normal, left);
-        double stop = carrier && carrier->friction > 0 ? stop_time(v, left) : INFINITY;
+        double normal[3], left[3], time = left_time, elapsed = moves ? contact->dt - left_time : 0;
+        strike_touching(contact, x, v, a, elapsed, moves);
+        const ck_Collider *carrier = support(contact, x, v, a, elapsed, moves, normal, left);
+        Seen seen;
+        see(&seen, contact, carrier ? carrier : contact->model->colliders, x, v, elapsed, moves);
+        double stop = carrier && carrier->friction > 0 ? stop_time(seen.v, left) : INFINITY;
         time = fmin(time, stop);
-        const ck_Collider *hit = first_hit(contact, x, v, left, &time);
-        if (carrier)
-            slide(carrier, x, v, a, left, time, !hit && time == stop);
-        else
+        const ck_Collider *hit = first_hit(contact, x, v, left, elapsed, moves, &time);
+        if (carrier) {
+            slide(carrier, seen.x, seen.v, a, left, time, !hit && time == stop);
+            look_back(&seen, contact, carrier, elapsed + time, moves, x, v);
+        } else {
             fly(x, v, left, time);
-        if (hit) place(hit, x, normal);
+        }
+        if (hit) {
+            see(&seen, contact, hit, x, v, elapsed + time, moves);
+            place(hit, seen.x, normal);
+            look_back(&seen, contact, hit, elapsed + time, moves, x, v);
+        }
         left_time -= time;
     }
     add_impulse(contact, mass, free_flight, v);
 }
 
-bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a) {
-    double time = contact->dt, normal[3], at[3], speed[3];
-    const ck_Collider *hit = first_hit(contact, x, v, a, &time);
+void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, const double *a) {
+    if (contact->motion)
+        advance(contact, mass, x, v, a, true);
+    else
+        advance(contact, mass, x, v, a, false);
+}
+
+static inline __attribute__((always_inline)) bool impacts(const ck_Contact *contact, const double *x, const double *v,
+                                                          const double *a, const bool moves) {
+    double time = contact->dt, normal[3];
+    const ck_Collider *hit = first_hit(contact, x, v, a, 0, moves, &time);
     if (!hit) {
         // one that touches already
         for (int i = 0; i < contact->model->collider_count; i++) {
-            double gap = ck_collider_gap(&contact->model->colliders[i], x, normal);
-            if (gap <= contact->slack && -ck_dot(v, normal) > 2 * fabs(ck_dot(a, normal)) * contact->dt) return true;
+            Seen seen;
+            see(&seen, contact, &contact->model->colliders[i], x, v, 0, moves);
+            double gap = ck_collider_gap(&contact->model->colliders[i], seen.x, normal);
+            if (gap <= contact->slack && -ck_dot(seen.v, normal) > 2 * fabs(ck_dot(a, normal)) * contact->dt)
+                return true;
         }
         return false;
     }
-    memcpy(at, x, sizeof at);
-    memcpy(speed, v, sizeof speed);
+    Seen seen;
+    double at[3], speed[3];
+    see(&seen, contact, hit, x, v, 0, moves);
+    memcpy(at, seen.x, sizeof at);
+    memcpy(speed, seen.v, sizeof speed);
     fly(at, speed, a, time);
     ck_collider_gap(hit, at, normal);
     return -ck_dot(speed, normal) > 2 * fabs(ck_dot(a, normal)) * contact->dt;
+}
+
+bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a) {
+    return contact->motion ? impacts(contact, x, v, a, true) : impacts(contact, x, v, a, false);
 }
 
 // One round of ck_contact_project; false where nothing was inside.
@@ -219,12 +315,16 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, doub
     bool pushed = false;
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
-        double normal[3], along[3], way[3], before[3], gap = ck_collider_gap(collider, x, normal);
+        const double none[3] = {0};
+        Seen seen;
+        see(&seen, contact, collider, x, none, contact->dt, contact->motion != NULL);
+        double normal[3], along[3], way[3], before[3], gap = ck_collider_gap(collider, seen.x, normal);
         if (!(gap < 0)) continue;
         pushed = true;
         memcpy(before, x, sizeof before);
         ck_add_scaled(x, -gap, normal);
         ck_subtract(way, x, start);
+        if (contact->motion) ck_add_scaled(way, contact->dt, seen.v); // less the collider's own
         ck_tangential(along, way, normal);
         double sliding = ck_length(along);
         if (sliding > 0) ck_add_scaled(x, -fmin(1, collider->friction * -gap / sliding), along);

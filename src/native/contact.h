@@ -8,12 +8,23 @@
 
 #include "model.h"
 
+// Of a collider that moves: how far it has come at the start of a substep, m, and its mean speed in it, m/s.
+typedef struct ck_Motion {
+    double moved[3], velocity[3];
+} ck_Motion;
+
 typedef struct ck_Contact {
     const ck_Model *model;
     double dt;         // s, one substep
     double slack;      // m: closer than this is touching
     double impulse[3]; // N·s, of all colliders on the body since it was last cleared
+    double elapsed;    // s of the substep, at which ck_contact_filter is asked; colliders that stay do not read it
+    ck_Motion *motion; // [colliders]; NULL: all stay
 } ck_Contact;
+
+// Where colliders move: sets their motion in the substep that starts at a time, s. Within a substep each goes at one
+// speed, so that contact is that of one at rest, seen from it.
+void ck_contact_follow(ck_Contact *contact, double time);
 
 // NULL in a scene without colliders, which costs it one comparison a substep. *contact is freed with free.
 // Errors: CK_NO_MEMORY.

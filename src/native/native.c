@@ -85,6 +85,8 @@ void ck_native_start_frame(ck_Native *native) {
 void ck_native_start_substep(ck_Native *native) {
     size_t bytes = 3 * sizeof(double) * (size_t)native->model->particle_count;
     memcpy(native->start, native->position, bytes);
+    if (native->contact && native->contact->motion)
+        ck_contact_follow(native->contact, (double)native->done * native->dt);
     if (native->contact) memcpy(native->origin, native->start, bytes);
 }
 

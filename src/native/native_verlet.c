@@ -68,6 +68,8 @@ static void follow_jump(ck_Native *native) {
 // accelerations, by the state at the end, makes the correction.
 static void substep_with_contact(ck_Native *native) {
     double *x = native->position, *v = native->velocity, *predicted = native->other_velocity, left[3];
+    if (native->contact->motion) ck_contact_follow(native->contact, (double)native->done * native->dt);
+    native->contact->elapsed = native->dt;
     for (int i = 0; i < native->model->particle_count; i++) {
         double *a = native->acceleration + 3 * i;
         if (native->inverse_mass[i] == 0) continue;
