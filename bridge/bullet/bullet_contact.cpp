@@ -40,6 +40,8 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
     body.soft->getCollisionShape()->setMargin(margin);
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider &collider = model->colliders[i];
+        start_of.push_back(collider);
+        end_of.push_back(collider);
         btTransform place(btQuaternion::getIdentity(),
                           btVector3(collider.point[0], collider.point[1], collider.point[2]));
         if (collider.shape == CK_PLANE) {
@@ -65,13 +67,32 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
 void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body) {
     const btVector3 middle = middle_of(body);
     for (auto &plane : bodies) {
-        const ck_Collider &collider = of(body.model, plane.get());
-        if (collider.shape != CK_PLANE) continue;
+        const ck_Collider &collider = at_start(plane.get());
+        if (collider.shape != CK_PLANE || collider.path) continue;
         btTransform place = place_plane(collider, middle, ck_bullet_margin(body.model));
         if (!((place.getOrigin() - plane->getWorldTransform().getOrigin()).length() > half_side_left)) continue;
         plane->setWorldTransform(place);
         plane->setInterpolationWorldTransform(place);
         world.updateSingleAabb(plane.get());
+    }
+}
+
+void ck_BulletColliders::move(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, double start) {
+    for (auto &object : bodies) {
+        const size_t index = static_cast<size_t>(object->getUserIndex());
+        const ck_Collider &collider = body.model->colliders[index];
+        double velocity[3], acceleration[3];
+        if (!collider.path) continue;
+        start_of[index] = ck_collider_at(&collider, start, 1, velocity, acceleration);
+        end_of[index] = ck_collider_at(&collider, start + body.dt, -1, velocity, acceleration);
+        const double *from = start_of[index].point, *to = end_of[index].point;
+        btTransform place(btQuaternion::getIdentity(), btVector3(to[0], to[1], to[2]));
+        if (collider.shape == CK_PLANE)
+            place = place_plane(end_of[index], middle_of(body), ck_bullet_margin(body.model));
+        object->setWorldTransform(place);
+        object->setInterpolationWorldTransform(place);
+        object->setLinearVelocity(btVector3(to[0] - from[0], to[1] - from[1], to[2] - from[2]) / body.dt);
+        world.updateSingleAabb(object.get());
     }
 }
 

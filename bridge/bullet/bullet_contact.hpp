@@ -14,15 +14,25 @@ class ck_BulletColliders {
     void add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info);
     // Before a frame: the boxes that stand for planes go where the body is, along their planes.
     void follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body);
+    // Before a step that starts at a time, s: colliders that move go where they are at its end, with the speed that
+    // takes them there.
+    void move(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, double start);
     // Takes them out again: the world owns nothing.
     void remove(btDiscreteDynamicsWorld &world);
 
-    // The collider that a contact is with.
-    static const ck_Collider &of(const ck_Model *model, const btCollisionObject *object) {
-        return model->colliders[object->getUserIndex()];
+    // The collider that a contact is with, where it is at the start of the step and at its end; its speed.
+    const ck_Collider &at_start(const btCollisionObject *object) const {
+        return start_of[static_cast<size_t>(object->getUserIndex())];
+    }
+    const ck_Collider &at_end(const btCollisionObject *object) const {
+        return end_of[static_cast<size_t>(object->getUserIndex())];
+    }
+    static btVector3 speed(const btCollisionObject *object) {
+        return static_cast<const btRigidBody *>(object)->getLinearVelocity();
     }
 
   private:
+    std::vector<ck_Collider> start_of, end_of;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
 };

@@ -25,6 +25,7 @@ class World : public btDeformableMultiBodyDynamicsWorld {
   public:
     using btDeformableMultiBodyDynamicsWorld::btDeformableMultiBodyDynamicsWorld;
     const ck_BulletBody *body = nullptr;
+    const ck_BulletColliders *colliders = nullptr;
     bool was_clamped = false; // a speed, by Bullet, to what crosses the body's bounding box in a step
 
     // stepSimulation would only wrap profiling and interpolation around this
@@ -67,21 +68,24 @@ class World : public btDeformableMultiBodyDynamicsWorld {
 // Restitution and its friction. Bullet's own friction is that of an impact that stops, of which its explicit world,
 // which looks ahead, only sees the part that is too fast to reach the surface: it is left out.
 void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btScalar dt) {
-    const ck_Collider &collider = ck_BulletColliders::of(body->model, contact.m_cti.m_colObj);
+    const ck_Collider &collider =
+        is_implicit ? colliders->at_start(contact.m_cti.m_colObj) : colliders->at_end(contact.m_cti.m_colObj);
+    const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj);
     if (!(collider.restitution > 0)) return;
     btSoftBody::Node &node = *contact.m_node;
     double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
     btVector3 normal(out[0], out[1], out[2]);
     double pull = -ck_bullet_field(*body, body->particle_of_node[node.index]).dot(normal);
-    double speed = -speed_before[node.index].dot(normal);
+    double speed = -(speed_before[node.index] - carried).dot(normal);
     // what cannot be told from rest
     if (speed <= 2 * btFabs(pull) * dt) return;
     double leaving = ck_collider_rebound(collider.restitution, -gap, speed, pull, dt);
     btVector3 before = speed_before[node.index] + ck_bullet_field(*body, body->particle_of_node[node.index]) * dt;
+    before -= carried;
     btVector3 along = before - normal * before.dot(normal);
     double sliding = along.length();
     if (sliding > 0) along *= 1 - btMin(1.0, collider.friction * (speed + leaving) / sliding);
-    node.m_v = along + normal * leaving;
+    node.m_v = carried + along + normal * leaving;
 }
 
 // Bullet keeps the count of Newton iterations to itself
@@ -204,6 +208,7 @@ std::unique_ptr<Deformable> build_world(const ck_Model *model, const ck_Settings
                                            &state->configuration, &state->solver);
     World &world = *state->world;
     world.body = &state->body;
+    world.colliders = &state->colliders;
     world.is_implicit = is_implicit;
     // without projection the implicit world reads out of bounds, and nothing moves
     world.setImplicit(is_implicit);
@@ -263,6 +268,7 @@ ck_StepResult step(void *out) {
             ck_bullet_drive(body.model, start + (i + 1) * body.dt, body.dt, [&](int particle) -> btSoftBody::Node & {
                 return body.soft->m_nodes[body.node_of_particle[particle]];
             });
+            state.colliders.move(*state.world, body, start + i * body.dt);
             state.world->step_once(body.dt);
         }
         return CK_OK;
@@ -321,7 +327,7 @@ ck_Status code_explicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Set
 
 const unsigned terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
                        CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING |
-                       CK_TERM_WIND | CK_TERM_MOVES;
+                       CK_TERM_WIND | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
 
 const ck_Setting implicit_settings[] = {
     {.name = "substeps",

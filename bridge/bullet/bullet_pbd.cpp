@@ -58,6 +58,7 @@ struct Surroundings {
 struct Landing {
     btSoftBody::Node *node;
     btVector3 normal;
+    btVector3 carried;     // m/s of the collider
     double shift, leaving; // m and m/s along the normal
     double incoming;       // m/s against it
 };
@@ -209,14 +210,15 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
     state.landings.clear();
     for (int i = 0; i < body.soft->m_rcontacts.size(); i++) {
         btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
-        const ck_Collider &collider = ck_BulletColliders::of(body.model, contact.m_cti.m_colObj);
+        const ck_Collider &collider = state.around->colliders.at_start(contact.m_cti.m_colObj);
+        const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj);
         const btSoftBody::Node &node = *contact.m_node;
         // Bullet's normals are slopes of a grid, off by a hundredth on a ball whose radius is sixty of its voxels
         double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
         const btVector3 normal(out[0], out[1], out[2]);
         contact.m_cti.m_normal = normal;
         auto index = contact.m_node - &body.soft->m_nodes[0];
-        btVector3 way = node.m_x - node.m_q;
+        btVector3 way = node.m_x - node.m_q - carried * dt;
         // what links will add, by their tension at the start of the substep: it presses and pulls along, too
         btVector3 foreseen = way + tension_of(state, static_cast<int>(index)) * (node.m_im * dt * dt);
         double way_in = -way.dot(normal), press = -foreseen.dot(normal);
@@ -225,6 +227,7 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
         Landing landing = land(collider, gap, way_in, pull, dt);
         landing.node = contact.m_node;
         landing.normal = normal;
+        landing.carried = carried;
         state.landings.push_back(landing);
         double push = std::fmax(0, press) + dt * landing.leaving;
         contact.m_c3 = slip > 0 ? 1 - std::fmin(1, collider.friction * push / slip) : 0;
@@ -237,7 +240,7 @@ void finish_landings(Classic &state) {
     for (const Landing &landing : state.landings) {
         btSoftBody::Node &node = *landing.node;
         // links may have pulled it off
-        if (node.m_v.dot(landing.normal) > 1e-6 * landing.incoming) continue;
+        if ((node.m_v - landing.carried).dot(landing.normal) > 1e-6 * landing.incoming) continue;
         node.m_x += landing.normal * landing.shift;
         node.m_v += landing.normal * landing.leaving;
     }
@@ -331,6 +334,7 @@ void step_once(Classic &state, double end) {
     if (state.body.model->terms & CK_TERM_FORCE)
         for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force, node);
     if (state.around) {
+        state.around->colliders.move(state.around->world, state.body, end - state.body.dt);
         state.around->world.step_once(state.body.dt);
         finish_landings(state);
         return;
@@ -452,7 +456,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
              CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |
-             CK_TERM_MOVES,
+             CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,

@@ -126,21 +126,23 @@ void add_soft_body(Stock &stock) {
     stock.world.addSoftBody(&soft);
 }
 
+btTransform place_of(const ck_Collider &collider) {
+    const btVector3 point(collider.point[0], collider.point[1], collider.point[2]),
+        normal(collider.normal[0], collider.normal[1], collider.normal[2]);
+    if (collider.shape == CK_SPHERE) return btTransform(btQuaternion::getIdentity(), point);
+    return btTransform(shortestArcQuat(btVector3(0, 1, 0), normal), point - normal * half_side);
+}
+
 void add_colliders(Stock &stock) {
     const ck_Model *model = &stock.model;
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider &collider = model->colliders[i];
-        const btVector3 point(collider.point[0], collider.point[1], collider.point[2]),
-            normal(collider.normal[0], collider.normal[1], collider.normal[2]);
-        btTransform place(btQuaternion::getIdentity(), point);
-        if (collider.shape == CK_PLANE) {
+        if (collider.shape == CK_PLANE)
             stock.shapes.push_back(std::make_unique<btBoxShape>(btVector3(half_side, half_side, half_side)));
-            place = btTransform(shortestArcQuat(btVector3(0, 1, 0), normal), point - normal * half_side);
-        } else {
+        else
             stock.shapes.push_back(std::make_unique<btSphereShape>(collider.radius));
-        }
         btRigidBody::btRigidBodyConstructionInfo construction(0, nullptr, stock.shapes.back().get());
-        construction.m_startWorldTransform = place;
+        construction.m_startWorldTransform = place_of(collider);
         construction.m_friction = collider.friction;
         construction.m_restitution = collider.restitution;
         stock.bodies.push_back(std::make_unique<btRigidBody>(construction));
@@ -159,8 +161,19 @@ btScalar fixed_step_of(btScalar step, uint32_t substeps) {
 void drive(btDynamicsWorld *world, btScalar dt) {
     Stock &stock = *static_cast<Stock *>(world->getWorldUserInfo());
     const double step = stock.model.step / stock.used.substeps;
-    ck_bullet_drive(&stock.model, static_cast<double>(++stock.done) * step, dt,
+    const double end = static_cast<double>(++stock.done) * step;
+    ck_bullet_drive(&stock.model, end, dt,
                     [&](int particle) -> btSoftBody::Node & { return stock.soft->m_nodes[particle]; });
+    for (int i = 0; i < stock.model.collider_count; i++) {
+        double moved[3], speed[3], acceleration[3];
+        if (!stock.model.colliders[i].path) continue;
+        ck_path_at(stock.model.colliders[i].path, end, -1, moved, speed, acceleration);
+        btTransform place = place_of(stock.model.colliders[i]);
+        place.setOrigin(place.getOrigin() + btVector3(moved[0], moved[1], moved[2]));
+        stock.bodies[i]->setWorldTransform(place);
+        stock.bodies[i]->setLinearVelocity(btVector3(speed[0], speed[1], speed[2]));
+        stock.world.updateSingleAabb(stock.bodies[i].get());
+    }
 }
 
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
@@ -180,7 +193,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         info.m_sparsesdf.Initialize();
         add_soft_body(*stock);
         add_colliders(*stock);
-        if (model->driven_count) stock->world.setInternalTickCallback(drive, stock.get(), true);
+        if (model->path_count) stock->world.setInternalTickCallback(drive, stock.get(), true);
         *out = stock.release();
         return CK_OK;
     });
@@ -285,7 +298,7 @@ extern "C" const ck_Engine ck_bullet_stock = {
     .version = ck_bullet_version,
     .method = CK_METHOD_UNKNOWN,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES,
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .is_stock = true,

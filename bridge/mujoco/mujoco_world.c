@@ -176,6 +176,9 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     ck_Status status = translate(model, wanted, used, ledger);
     if (status) return ck_fail(error, status, "out of memory");
     // it keeps each tendon's pull on each joint, and counts in 32 bits
+    for (int i = 0; i < model->collider_count; i++)
+        if (model->colliders[i].path && model->colliders[i].shape == CK_PLANE)
+            return ck_fail(error, CK_REFUSED, "MuJoCo's planes belong to the world: they do not move");
     double numbers = 3.0 * model->spring_count * model->particle_count;
     if (numbers > MOST_NUMBERS)
         return ck_fail(error, CK_REFUSED,
@@ -247,11 +250,32 @@ static void drive(MujocoWorld *world, int side) {
     }
 }
 
+// Balls that move: with a force that gives their bodies the acceleration of their path.
+static void drive_colliders(MujocoWorld *world) {
+    const ck_Model *model = &world->scaled.model;
+    const double now = (double)world->done * model->step / world->used.substeps;
+    for (int i = 0; i < model->collider_count && (model->terms & CK_TERM_MOVING_COLLIDERS); i++) {
+        char name[20];
+        double moved[3], v[3], a[3];
+        if (!model->colliders[i].path) continue;
+        snprintf(name, sizeof name, "c%d", i);
+        const int body = mj_name2id(world->model, mjOBJ_BODY, name), joint = world->model->body_dofadr[body];
+        ck_path_at(model->colliders[i].path, now, 1, moved, v, a);
+        for (int axis = 0; axis < 3; axis++) {
+            world->data->qpos[joint + axis] = moved[axis];
+            world->data->qvel[joint + axis] = v[axis];
+            world->data->xfrc_applied[6 * body + axis] =
+                world->model->body_mass[body] * (a[axis] - model->gravity[axis]);
+        }
+    }
+}
+
 static ck_StepResult step(void *state) {
     MujocoWorld *world = state;
     if (!world->data) return CK_STEP_NO_MEMORY;
     for (uint32_t i = 0; i < world->used.substeps; i++) {
         drive(world, 1);
+        drive_colliders(world);
         if (world->outer) add_outer(world);
         mj_step(world->model, world->data);
         world->done++;
@@ -325,7 +349,8 @@ const ck_Engine ck_mujoco = {
     .version = version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES,
+             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |
+             CK_TERM_MOVING_COLLIDERS,
     .settings = settings,
     .order = 1,
     .create = create,

@@ -53,9 +53,20 @@ static void write_turn(FILE *out, const double *normal) {
     fprintf(out, " zaxis=\"%.17g %.17g %.17g\"", normal[0], normal[1], normal[2]);
 }
 
+// A ball that moves is a body, which is put where it belongs before every step, and too heavy to be pushed.
+static void write_moving(FILE *out, const ck_Model *model, int index) {
+    double mass = CK_MUJOCO_HEAVY * model->particle_count;
+    fprintf(out, "<body name=\"c%d\"><inertial pos=\"0 0 0\" mass=\"%.17g\" diaginertia=\"%.17g %.17g %.17g\"/>", index,
+            mass, mass, mass, mass);
+    for (int axis = 0; axis < 3; axis++)
+        fprintf(out, "<joint type=\"slide\" axis=\"%d %d %d\"/>", axis == 0, axis == 1, axis == 2);
+}
+
 // A plane sinks and a ball shrinks by the radius of what stands for a particle.
-static void write_collider(FILE *out, const ck_Collider *collider, const ck_MujocoOptions *options) {
+static void write_collider(FILE *out, const ck_Model *model, int index, const ck_MujocoOptions *options) {
+    const ck_Collider *collider = &model->colliders[index];
     const double *at = collider->point, *normal = collider->normal;
+    if (collider->path) write_moving(out, model, index);
     fprintf(out, "<geom contype=\"0\" conaffinity=\"1\"");
     if (collider->shape == CK_SPHERE) {
         fprintf(out, " type=\"sphere\" size=\"%.17g\" pos=\"%.17g %.17g %.17g\"", collider->radius - options->radius,
@@ -66,7 +77,7 @@ static void write_collider(FILE *out, const ck_Collider *collider, const ck_Mujo
         write_turn(out, normal);
     }
     write_contact(out, collider, options->step);
-    fprintf(out, "/>\n");
+    fprintf(out, collider->path ? "/></body>\n" : "/>\n");
 }
 
 static void write_particle(FILE *out, const ck_Model *model, int particle, const ck_MujocoOptions *options) {
@@ -128,7 +139,7 @@ char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size
             options->step, g[0], g[1], g[2], options->integrator,
             10 + 3 * model->particle_count * model->collider_count, 10 + model->particle_count * model->collider_count,
             ck_mujoco_stack(model, options->integrator));
-    for (int i = 0; i < model->collider_count; i++) write_collider(out, &model->colliders[i], options);
+    for (int i = 0; i < model->collider_count; i++) write_collider(out, model, i, options);
     for (int i = 0; i < model->particle_count; i++) write_particle(out, model, i, options);
     fprintf(out, "</worldbody>\n");
     write_springs(out, model);

@@ -4,6 +4,9 @@
 
 #include "model.h"
 
+// The mass of a ball that moves, a particle of the body, in units of a scaled model.
+#define CK_MUJOCO_HEAVY 1e6
+
 #include <stddef.h>
 
 // Steps that an impact with restitution lasts, about: it is followed by that many.

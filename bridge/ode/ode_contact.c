@@ -28,8 +28,12 @@ ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *mode
         *made = (ck_OdeContacts){.model = model,
                                  .h = h,
                                  .push_speed = ck_ode_push_speed(model),
+                                 .now = malloc(sizeof(ck_Collider) * (size_t)model->collider_count),
+                                 .carried = calloc(3 * (size_t)model->collider_count, sizeof(double)),
                                  .feedback = calloc(most, sizeof *made->feedback)};
-    if (made && made->feedback) made->joints = dJointGroupCreate(0);
+    const bool has_room = made && made->feedback && made->now && made->carried;
+    if (has_room) memcpy(made->now, model->colliders, sizeof(ck_Collider) * (size_t)model->collider_count);
+    if (has_room) made->joints = dJointGroupCreate(0);
     if (!made || !made->joints) {
         ck_ode_contacts_destroy(made);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -42,6 +46,8 @@ void ck_ode_contacts_destroy(ck_OdeContacts *contacts) {
     if (!contacts) return;
     if (contacts->joints) dJointGroupDestroy(contacts->joints);
     free(contacts->feedback);
+    free(contacts->now);
+    free(contacts->carried);
     free(contacts);
 }
 
@@ -73,10 +79,12 @@ static void slip_direction(double *slip, const double *velocity, const double *f
     for (int axis = 0; axis < 3; axis++) slip[axis] /= length;
 }
 
+//   carried  [3] m/s, of the collider, which is where it is at the start of the step
 static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, int particle,
-                        const ck_Collider *collider) {
-    const double *position = dBodyGetPosition(body), *velocity = dBodyGetLinearVel(body);
-    double normal[3], field[3], slip[3], h = contacts->h;
+                        const ck_Collider *collider, const double *carried) {
+    const double *position = dBodyGetPosition(body);
+    double normal[3], field[3], slip[3], across[3], velocity[3], h = contacts->h;
+    ck_subtract(velocity, dBodyGetLinearVel(body), carried);
     double gap = ck_collider_gap(collider, position, normal), speed = ck_dot(velocity, normal);
     ck_model_field(contacts->model, particle, field);
     double rest = 2 * ck_length(field) * h;
@@ -102,6 +110,13 @@ static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, 
                                     .motionN = wanted_speed(collider, gap, speed, rest, -ck_dot(field, normal), h,
                                                             contacts->push_speed)}};
     slip_direction(slip, velocity, field, normal, h);
+    if (ck_dot(carried, carried) > 0) {
+        ck_cross(across, normal, slip);
+        contact.surface.mode |= dContactMotion1 | dContactMotion2;
+        contact.surface.motionN += ck_dot(carried, normal);
+        contact.surface.motion1 = ck_dot(carried, slip);
+        contact.surface.motion2 = ck_dot(carried, across);
+    }
     for (int axis = 0; axis < 3; axis++) {
         contact.geom.pos[axis] = position[axis]; // at the centre: nothing turns
         contact.geom.normal[axis] = normal[axis];
@@ -112,10 +127,24 @@ static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, 
     dJointSetFeedback(joint, &contacts->feedback[contacts->count++]);
 }
 
-void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies) {
+// Colliders that move: where they are at a time, s, and how fast they go in the step from then.
+static void follow(ck_OdeContacts *contacts, double time) {
+    for (int i = 0; i < contacts->model->collider_count; i++) {
+        const ck_Collider *collider = &contacts->model->colliders[i];
+        double none[3], other[3], *carried = contacts->carried + 3 * i;
+        if (!collider->path) continue;
+        contacts->now[i] = ck_collider_at(collider, time, 1, none, other);
+        const ck_Collider end = ck_collider_at(collider, time + contacts->h, -1, none, other);
+        ck_subtract(carried, end.point, contacts->now[i].point);
+        for (int axis = 0; axis < 3; axis++) carried[axis] /= contacts->h;
+    }
+}
+
+void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies, double time) {
+    if (contacts->model->terms & CK_TERM_MOVING_COLLIDERS) follow(contacts, time);
     for (int i = 0; i < contacts->model->particle_count; i++)
         for (int j = 0; j < contacts->model->collider_count && !dBodyIsKinematic(bodies[i]); j++)
-            add_contact(contacts, world, bodies[i], i, &contacts->model->colliders[j]);
+            add_contact(contacts, world, bodies[i], i, &contacts->now[j], contacts->carried + 3 * j);
 }
 
 void ck_ode_contacts_remove(ck_OdeContacts *contacts) {

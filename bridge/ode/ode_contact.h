@@ -9,6 +9,8 @@
 
 typedef struct ck_OdeContacts {
     const ck_Model *model;
+    ck_Collider *now;         // [colliders] where they are
+    double *carried;          // [3*colliders] m/s, of those that move
     double h;                 // s, one substep
     double push_speed;        // m/s, the most with which what is inside is pushed out
     dJointGroupID joints;     // of this substep
@@ -24,8 +26,9 @@ double ck_ode_push_speed(const ck_Model *model);
 ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *model, double h, ck_Error *error);
 void ck_ode_contacts_destroy(ck_OdeContacts *contacts);
 
-// Before a step: a joint for each particle that touches, or is about to. bodies  [particle_count]
-void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies);
+// Before a step that starts at a time, s: a joint for each particle that touches, or is about to.
+//   bodies  [particle_count]
+void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies, double time);
 
 // After it: notes what the joints pushed with, and removes them.
 void ck_ode_contacts_remove(ck_OdeContacts *contacts);

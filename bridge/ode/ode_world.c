@@ -303,7 +303,8 @@ static ck_StepResult step(void *state) {
             if (!dBodyIsKinematic(ode->bodies[j])) dBodyAddForce(ode->bodies[j], force[0], force[1], force[2]);
         drive(ode);
         if (ode->outer) add_outer(ode);
-        if (ode->contacts) ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies);
+        if (ode->contacts)
+            ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies, ((double)ode->done - 1) * ode->dt);
         // QuickStep shuffles its rows from a seed that is global to the process
         dRandSetSeed(1);
         int done = ode->quick ? dWorldQuickStep(ode->world, ode->dt) : dWorldStep(ode->world, ode->dt);
@@ -360,7 +361,7 @@ static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const c
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
      CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |            \
-     CK_TERM_MOVES)
+     CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
 
 static const ck_Setting quick_settings[] = {
     {.name = "substeps",

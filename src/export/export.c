@@ -92,12 +92,19 @@ static json_t *path_of(const ck_Path *path) {
     return NULL;
 }
 
-static json_t *collider_of(const ck_Collider *collider) {
+static json_t *shape_of(const ck_Collider *collider) {
     if (collider->shape == CK_SPHERE)
         return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(collider->point), "radius",
                          collider->radius, "restitution", collider->restitution, "friction", collider->friction);
     return json_pack("{s:{s:o, s:o, s:f, s:f}}", "plane", "point", vector_of(collider->point), "normal",
                      vector_of(collider->normal), "restitution", collider->restitution, "friction", collider->friction);
+}
+
+static json_t *collider_of(const ck_Collider *collider) {
+    json_t *shape = shape_of(collider);
+    if (!shape || !collider->path || !json_object_set_new(shape, "path", path_of(collider->path))) return shape;
+    json_decref(shape);
+    return NULL;
 }
 
 static void put_network(Writer *writer, const ck_Model *model) {
@@ -292,5 +299,13 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
             line(out, "sphere", ball, 6);
         else
             line(out, "plane", plane, 8);
+    }
+    int moving = 0;
+    for (int i = 0; i < model->collider_count; i++) moving += model->colliders[i].path != NULL;
+    if (moving) fprintf(out, "moving %d\n", moving);
+    for (int i = 0; i < model->collider_count; i++) {
+        if (!model->colliders[i].path) continue;
+        fprintf(out, "%d ", i);
+        write_path(out, model->colliders[i].path);
     }
 }

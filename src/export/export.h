@@ -17,7 +17,7 @@ ck_Status ck_export_json(FILE *out, const ck_Model *model, ck_Error *error);
 ck_Status ck_export_obj(FILE *out, const ck_Model *model, ck_Error *error);
 
 // As tables in a directory: particles.csv, springs.csv, colliders.csv, scene.csv and,
-// where pins move, moves.csv. Errors: CK_IO, CK_NO_MEMORY.
+// where pins or colliders move, moves.csv and collider_moves.csv. Errors: CK_IO, CK_NO_MEMORY.
 ck_Status ck_export_csv(const char *directory, const ck_Model *model, ck_Error *error);
 
 // As lines of words, which an adapter can read with scanf; bridge/README.md has them. Errors are the stream's.

@@ -48,6 +48,14 @@ static const ck_Layout moves = {"moves.csv",
                                  {"y", CK_COLUMN_NUMBER},
                                  {"z", CK_COLUMN_NUMBER}}};
 
+static const ck_Layout collider_moves = {"collider_moves.csv",
+                                         "how far each collider that moves has come at every frame, s and m",
+                                         {{"collider", CK_COLUMN_NUMBER},
+                                          {"time_s", CK_COLUMN_NUMBER},
+                                          {"x", CK_COLUMN_NUMBER},
+                                          {"y", CK_COLUMN_NUMBER},
+                                          {"z", CK_COLUMN_NUMBER}}};
+
 static const ck_Layout scene = {"scene.csv",
                                 "what acts on all of it",
                                 {{"key", CK_COLUMN_NAME}, {"unit", CK_COLUMN_NAME}, {"value", CK_COLUMN_NUMBER}}};
@@ -96,6 +104,17 @@ static void add_moves(ck_Csv *csv, const ck_Model *model) {
         }
 }
 
+static void add_collider_moves(ck_Csv *csv, const ck_Model *model) {
+    for (int i = 0; i < model->collider_count; i++)
+        for (int frame = 0; frame <= model->frame_count && model->colliders[i].path; frame++) {
+            double moved[3], v[3], a[3];
+            ck_path_at(model->colliders[i].path, frame * model->step, -1, moved, v, a);
+            ck_csv_number(csv, i);
+            ck_csv_number(csv, frame * model->step);
+            add_numbers(csv, moved, 3);
+        }
+}
+
 static void add_colliders(ck_Csv *csv, const ck_Model *model) {
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider *collider = &model->colliders[i];
@@ -141,7 +160,8 @@ ck_Status ck_export_csv(const char *directory, const ck_Model *model, ck_Error *
                   {&springs, add_springs},
                   {&colliders, add_colliders},
                   {&scene, add_scene},
-                  {model->driven_count ? &moves : NULL, add_moves}};
+                  {model->driven_count ? &moves : NULL, add_moves},
+                  {model->terms & CK_TERM_MOVING_COLLIDERS ? &collider_moves : NULL, add_collider_moves}};
     ck_Status status = CK_OK;
     for (size_t i = 0; i < sizeof tables / sizeof *tables && !status; i++) {
         ck_Csv csv = {0};

@@ -25,6 +25,7 @@ ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double 
 }
 
 void ck_contact_follow(ck_Contact *contact, double time) {
+    const double dt = contact->dt;
     contact->elapsed = 0;
     for (int i = 0; i < contact->model->collider_count && contact->motion; i++) {
         const ck_Path *path = contact->model->colliders[i].path;
@@ -32,45 +33,53 @@ void ck_contact_follow(ck_Contact *contact, double time) {
         double end[3], none[3], other[3];
         memset(motion, 0, sizeof *motion);
         if (!path) continue;
-        ck_path_at(path, time, -1, motion->moved, none, other);
-        ck_path_at(path, time + contact->dt, -1, end, none, other);
-        ck_subtract(motion->velocity, end, motion->moved);
-        for (int axis = 0; axis < 3; axis++) motion->velocity[axis] /= contact->dt;
+        ck_path_at(path, time, 1, motion->moved, motion->velocity, other);
+        ck_path_at(path, time + dt, -1, end, none, other);
+        for (int axis = 0; axis < 3; axis++)
+            motion->acceleration[axis] =
+                2 * (end[axis] - motion->moved[axis] - dt * motion->velocity[axis]) / (dt * dt);
     }
 }
 
-// A place and a speed as a collider sees them: where all stay, those of the caller, and else own.
+// A place, a speed and an acceleration as a collider sees them: where all stay, those of the caller, and else own.
 typedef struct Seen {
     double *x, *v;
-    double own[2][3];
+    const double *a;
+    double own[3][3];
 } Seen;
+
+static inline const ck_Motion *motion_of(const ck_Contact *contact, const ck_Collider *collider) {
+    return &contact->motion[collider - contact->model->colliders];
+}
 
 // After so much of the substep, s.
 //   moves  a constant of the caller: false costs nothing
 static inline void see(Seen *seen, const ck_Contact *contact, const ck_Collider *collider, const double *x,
-                       const double *v, double elapsed, const bool moves) {
+                       const double *v, const double *a, double elapsed, const bool moves) {
     // who only looks may be const
     seen->x = moves ? seen->own[0] : (double *)x;
     seen->v = moves ? seen->own[1] : (double *)v;
+    seen->a = moves ? seen->own[2] : a;
     if (!moves) return;
-    const ck_Motion *motion = &contact->motion[collider - contact->model->colliders];
-    memcpy(seen->x, x, 3 * sizeof(double));
-    memcpy(seen->v, v, 3 * sizeof(double));
-    ck_add_scaled(seen->x, -1, motion->moved);
-    ck_add_scaled(seen->x, -elapsed, motion->velocity);
-    ck_add_scaled(seen->v, -1, motion->velocity);
+    const ck_Motion *motion = motion_of(contact, collider);
+    for (int axis = 0; axis < 3; axis++) {
+        const double speed = motion->velocity[axis], gain = elapsed * motion->acceleration[axis];
+        seen->own[0][axis] = x[axis] - motion->moved[axis] - elapsed * (speed + 0.5 * gain);
+        seen->own[1][axis] = v[axis] - speed - gain;
+        seen->own[2][axis] = a[axis] - motion->acceleration[axis];
+    }
 }
 
-// What has become of them there.
+// What has become of place and speed there.
 static inline void look_back(const Seen *seen, const ck_Contact *contact, const ck_Collider *collider, double elapsed,
                              const bool moves, double *x, double *v) {
     if (!moves) return;
-    const ck_Motion *motion = &contact->motion[collider - contact->model->colliders];
-    memcpy(x, seen->x, 3 * sizeof(double));
-    memcpy(v, seen->v, 3 * sizeof(double));
-    ck_add_scaled(x, 1, motion->moved);
-    ck_add_scaled(x, elapsed, motion->velocity);
-    ck_add_scaled(v, 1, motion->velocity);
+    const ck_Motion *motion = motion_of(contact, collider);
+    for (int axis = 0; axis < 3; axis++) {
+        const double speed = motion->velocity[axis], gain = elapsed * motion->acceleration[axis];
+        x[axis] = seen->x[axis] + motion->moved[axis] + elapsed * (speed + 0.5 * gain);
+        v[axis] = seen->v[axis] + speed + gain;
+    }
 }
 
 static void add_impulse(ck_Contact *contact, double mass, const double *before, const double *after) {
@@ -147,12 +156,16 @@ static inline __attribute__((always_inline)) const ck_Collider *support(const ck
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
         Seen seen;
-        see(&seen, contact, collider, x, v, elapsed, moves);
+        see(&seen, contact, collider, x, v, left, elapsed, moves);
         double out[3];
         if (ck_collider_gap(collider, seen.x, out) > contact->slack) continue;
-        // leaving, faster than rounding
-        if (ck_dot(seen.v, out) > 1e-12 * ck_length(seen.v)) continue;
-        if (!hold(collider, out, contact->dt, seen.v, left)) continue;
+        // leaving, faster than rounding: that of the collider's own speed, too
+        if (ck_dot(seen.v, out) > 1e-12 * (moves ? ck_length(seen.v) + ck_length(v) : ck_length(v))) continue;
+        if (!hold(collider, out, contact->dt, seen.v, moves ? seen.own[2] : left)) continue;
+        if (moves) {
+            memcpy(left, seen.a, 3 * sizeof(double));
+            ck_add_scaled(left, 1, motion_of(contact, collider)->acceleration);
+        }
         carrier = collider;
         memcpy(normal, out, sizeof out);
         add_normal(&held, out);
@@ -181,30 +194,51 @@ static void place(const ck_Collider *collider, double *x, double *normal) {
     ck_add_scaled(x, -gap, normal);
 }
 
-// The time after which friction has taken the speed along its direction.
-static double stop_time(const double *v, const double *a) {
-    double speed_squared = ck_dot(v, v), rate = ck_dot(v, a);
-    return rate < 0 ? -speed_squared / rate : INFINITY;
+// How a slide goes on: friction takes all of a speed where it is stronger than what pushes along the surface, and else
+// that along its own way, which the push turns.
+typedef enum Ending { GOES_ON, STOPS, TURNS } Ending;
+
+// When it stops or turns, s; INFINITY where it goes on. T = v·(q + f·cos θ)/(q² − f²) of a constant push f at an angle
+// θ to v, by v' = f·cos θ − q and v·θ' = −f·sin θ: the way turns into the push while friction q slows it down.
+//   left  what friction leaves of the acceleration
+static double stop_time(double friction, const double *v, const double *left, Ending *ending) {
+    const double speed = ck_length(v), rate = ck_dot(v, left);
+    double push[3];
+    *ending = GOES_ON;
+    if (!(speed > 0)) return INFINITY;
+    memcpy(push, left, sizeof push);
+    ck_add_scaled(push, friction / speed, v);
+    const double f = ck_length(push);
+    *ending = friction > f ? STOPS : rate < 0 ? TURNS : GOES_ON;
+    if (*ending == STOPS) return (speed * friction + ck_dot(v, push)) / ((friction - f) * (friction + f));
+    return *ending == TURNS ? -speed * speed / rate : INFINITY;
+}
+
+// Takes the speed along a direction, which need not be of length 1.
+static void stop_along(double *v, const double *way) {
+    const double squared = ck_dot(way, way);
+    if (squared > 0) ck_add_scaled(v, -ck_dot(v, way) / squared, way);
 }
 
 // Along a surface. On a ball the speed follows from the work done, which keeps its energy whatever the step.
 static void slide(const ck_Collider *carrier, double *x, double *v, const double *a, const double *left, double time,
-                  bool stops) {
-    double from[3], way[3], normal[3], speed_squared = ck_dot(v, v), press;
+                  Ending ending) {
+    double from[3], way[3], slid[3], normal[3], speed_squared = ck_dot(v, v), press;
     memcpy(from, x, sizeof from);
+    memcpy(slid, v, sizeof slid);
     ck_collider_gap(carrier, x, normal);
     press = pressing(carrier, normal, v, a);
     fly(x, v, left, time);
-    if (carrier->shape == CK_PLANE) {
-        if (stops) memset(v, 0, 3 * sizeof(double));
-        return;
-    }
+    if (ending == STOPS) memset(v, 0, 3 * sizeof(double));
+    if (ending == TURNS) stop_along(v, slid);
+    if (carrier->shape == CK_PLANE) return;
     place(carrier, x, normal);
     ck_add_scaled(v, -ck_dot(v, normal), normal);
+    if (ending != GOES_ON) return;
     ck_subtract(way, x, from);
     speed_squared += 2 * ck_dot(a, way) - 2 * carrier->friction * press * ck_length(way);
     double speed = ck_length(v);
-    double scale = stops || !(speed > 0) ? 0 : sqrt(fmax(0, speed_squared)) / speed;
+    double scale = speed > 0 ? sqrt(fmax(0, speed_squared)) / speed : 0;
     for (int axis = 0; axis < 3; axis++) v[axis] *= scale;
 }
 
@@ -216,8 +250,8 @@ static inline __attribute__((always_inline)) const ck_Collider *first_hit(const 
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
         Seen seen;
-        see(&seen, contact, collider, x, v, elapsed, moves);
-        double hit = ck_collider_hit(collider, seen.x, seen.v, a, *time, contact->slack);
+        see(&seen, contact, collider, x, v, a, elapsed, moves);
+        double hit = ck_collider_hit(collider, seen.x, seen.v, seen.a, *time, contact->slack);
         if (hit <= *time) {
             *time = hit;
             first = collider;
@@ -233,11 +267,11 @@ static inline __attribute__((always_inline)) void strike_touching(const ck_Conta
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
         Seen seen;
-        see(&seen, contact, collider, x, v, elapsed, moves);
+        see(&seen, contact, collider, x, v, a, elapsed, moves);
         double normal[3], gap = ck_collider_gap(collider, seen.x, normal);
         if (gap > contact->slack) continue;
         if (gap < 0) ck_add_scaled(seen.x, -gap, normal);
-        strike(contact, collider, normal, seen.v, a);
+        strike(contact, collider, normal, seen.v, seen.a);
         look_back(&seen, contact, collider, elapsed, moves, x, v);
         add_normal(&touched, normal);
     }
@@ -253,19 +287,25 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
         double normal[3], left[3], time = left_time, elapsed = moves ? contact->dt - left_time : 0;
         strike_touching(contact, x, v, a, elapsed, moves);
         const ck_Collider *carrier = support(contact, x, v, a, elapsed, moves, normal, left);
-        Seen seen;
-        see(&seen, contact, carrier ? carrier : contact->model->colliders, x, v, elapsed, moves);
-        double stop = carrier && carrier->friction > 0 ? stop_time(seen.v, left) : INFINITY;
+        const ck_Collider *seer = carrier ? carrier : contact->model->colliders;
+        Seen seen, rest;
+        see(&seen, contact, seer, x, v, a, elapsed, moves);
+        see(&rest, contact, seer, x, v, left, elapsed, moves);
+        Ending ending = GOES_ON;
+        double stop = INFINITY;
+        if (carrier && carrier->friction > 0)
+            stop = stop_time(carrier->friction * pressing(carrier, normal, seen.v, seen.a), seen.v, rest.a, &ending);
+        if (stop > time) ending = GOES_ON;
         time = fmin(time, stop);
         const ck_Collider *hit = first_hit(contact, x, v, left, elapsed, moves, &time);
         if (carrier) {
-            slide(carrier, seen.x, seen.v, a, left, time, !hit && time == stop);
+            slide(carrier, seen.x, seen.v, seen.a, rest.a, time, hit ? GOES_ON : ending);
             look_back(&seen, contact, carrier, elapsed + time, moves, x, v);
         } else {
             fly(x, v, left, time);
         }
         if (hit) {
-            see(&seen, contact, hit, x, v, elapsed + time, moves);
+            see(&seen, contact, hit, x, v, a, elapsed + time, moves);
             place(hit, seen.x, normal);
             look_back(&seen, contact, hit, elapsed + time, moves, x, v);
         }
@@ -289,21 +329,21 @@ static inline __attribute__((always_inline)) bool impacts(const ck_Contact *cont
         // one that touches already
         for (int i = 0; i < contact->model->collider_count; i++) {
             Seen seen;
-            see(&seen, contact, &contact->model->colliders[i], x, v, 0, moves);
+            see(&seen, contact, &contact->model->colliders[i], x, v, a, 0, moves);
             double gap = ck_collider_gap(&contact->model->colliders[i], seen.x, normal);
-            if (gap <= contact->slack && -ck_dot(seen.v, normal) > 2 * fabs(ck_dot(a, normal)) * contact->dt)
+            if (gap <= contact->slack && -ck_dot(seen.v, normal) > 2 * fabs(ck_dot(seen.a, normal)) * contact->dt)
                 return true;
         }
         return false;
     }
     Seen seen;
     double at[3], speed[3];
-    see(&seen, contact, hit, x, v, 0, moves);
+    see(&seen, contact, hit, x, v, a, 0, moves);
     memcpy(at, seen.x, sizeof at);
     memcpy(speed, seen.v, sizeof speed);
-    fly(at, speed, a, time);
+    fly(at, speed, seen.a, time);
     ck_collider_gap(hit, at, normal);
-    return -ck_dot(speed, normal) > 2 * fabs(ck_dot(a, normal)) * contact->dt;
+    return -ck_dot(speed, normal) > 2 * fabs(ck_dot(seen.a, normal)) * contact->dt;
 }
 
 bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a) {
@@ -317,14 +357,18 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, doub
         const ck_Collider *collider = &contact->model->colliders[i];
         const double none[3] = {0};
         Seen seen;
-        see(&seen, contact, collider, x, none, contact->dt, contact->motion != NULL);
+        see(&seen, contact, collider, x, none, none, contact->dt, contact->motion != NULL);
         double normal[3], along[3], way[3], before[3], gap = ck_collider_gap(collider, seen.x, normal);
         if (!(gap < 0)) continue;
         pushed = true;
         memcpy(before, x, sizeof before);
         ck_add_scaled(x, -gap, normal);
         ck_subtract(way, x, start);
-        if (contact->motion) ck_add_scaled(way, contact->dt, seen.v); // less the collider's own
+        if (contact->motion) {
+            const ck_Motion *motion = motion_of(contact, collider);
+            ck_add_scaled(way, -contact->dt, motion->velocity); // less the collider's own
+            ck_add_scaled(way, -0.5 * contact->dt * contact->dt, motion->acceleration);
+        }
         ck_tangential(along, way, normal);
         double sliding = ck_length(along);
         if (sliding > 0) ck_add_scaled(x, -fmin(1, collider->friction * -gap / sliding), along);

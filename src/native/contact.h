@@ -8,9 +8,10 @@
 
 #include "model.h"
 
-// Of a collider that moves: how far it has come at the start of a substep, m, and its mean speed in it, m/s.
+// Of a collider that moves: how far it has come at the start of a substep, m, its speed then, m/s, and the acceleration
+// that takes it to where it is at the end, m/s².
 typedef struct ck_Motion {
-    double moved[3], velocity[3];
+    double moved[3], velocity[3], acceleration[3];
 } ck_Motion;
 
 typedef struct ck_Contact {
@@ -22,8 +23,9 @@ typedef struct ck_Contact {
     ck_Motion *motion; // [colliders]; NULL: all stay
 } ck_Contact;
 
-// Where colliders move: sets their motion in the substep that starts at a time, s. Within a substep each goes at one
-// speed, so that contact is that of one at rest, seen from it.
+// Where colliders move: sets their motion in the substep that starts at a time, s. Contact is that of one at rest, seen
+// from it: with its acceleration taken from the particle's. Were it to change its speed between substeps, friction
+// would let go of what it carries too early or too late.
 void ck_contact_follow(ck_Contact *contact, double time);
 
 // NULL in a scene without colliders, which costs it one comparison a substep. *contact is freed with free.

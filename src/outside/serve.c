@@ -153,6 +153,9 @@ static void read_faces(Server *server) {
     }
 }
 
+// The most pins and colliders together that move.
+#define MOST_PATHS 100000
+
 static void read_path(Server *server, ck_Path *path) {
     if (!next_word(server)) fail("the scene ends within a path");
     path->kind = !strcmp(server->word, "points") ? CK_PATH_POINTS
@@ -174,15 +177,36 @@ static void read_path(Server *server, ck_Path *path) {
     path->to = path->points[path->point_count - 1][0];
 }
 
+// Room for paths, to which pins and colliders point.
+static ck_Path *more_paths(Server *server, int more) {
+    ck_Model *model = &server->model;
+    if (!model->paths) model->paths = allocate(MOST_PATHS, sizeof *model->paths);
+    if (more > MOST_PATHS - model->path_count) fail("too much moves");
+    model->path_count += more;
+    return model->paths + model->path_count - more;
+}
+
+// Colliders that move, each its number and a path.
+static void read_moving(Server *server) {
+    ck_Model *model = &server->model;
+    const int moving = count(server);
+    ck_Path *path = more_paths(server, moving);
+    for (int i = 0; i < moving; i++, path++) {
+        const int collider = count(server);
+        if (collider >= model->collider_count) fail("no such collider moves");
+        model->colliders[collider].path = path;
+        read_path(server, path);
+    }
+}
+
 // Pins that move: each with a path of its own.
 static void read_moves(Server *server) {
     ck_Model *model = &server->model;
-    model->driven_count = model->path_count = count(server);
+    model->driven_count = count(server);
     model->driven = allocate((size_t)model->driven_count, sizeof *model->driven);
-    model->paths = allocate((size_t)model->path_count, sizeof *model->paths);
-    for (int i = 0; i < model->driven_count; i++) {
+    ck_Path *path = more_paths(server, model->driven_count);
+    for (int i = 0; i < model->driven_count; i++, path++) {
         ck_Driven *driven = &model->driven[i];
-        ck_Path *path = &model->paths[i];
         *driven = (ck_Driven){.particle = count(server), .path = path, .until = number(server)};
         if (driven->particle >= model->particle_count) fail("no such particle moves");
         memcpy(driven->start, model->position + 3 * driven->particle, sizeof driven->start);
@@ -216,7 +240,8 @@ static unsigned terms_of(const ck_Model *model) {
     for (int i = 0; i < 3 * model->particle_count; i++)
         if (model->velocity[i] != 0) terms |= CK_TERM_VELOCITY;
     for (int i = 0; i < model->collider_count; i++)
-        terms |= model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE;
+        terms |= (model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE) |
+                 (model->colliders[i].path ? CK_TERM_MOVING_COLLIDERS : 0);
     return terms;
 }
 
@@ -254,6 +279,8 @@ static void read_scene(Server *server) {
             read_hinges(server);
         else if (!strcmp(word, "moves"))
             read_moves(server);
+        else if (!strcmp(word, "moving"))
+            read_moving(server);
         else if (!strcmp(word, "colliders"))
             read_colliders(server);
         else if (!strcmp(word, "setting"))

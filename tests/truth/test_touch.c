@@ -77,12 +77,17 @@ static void write_scene(char *text, size_t size, uint64_t seed) {
         snprintf(collider, sizeof collider,
                  "plane: {point: [0, 0.2, 0], normal: [%.3f, 1, 0.1], friction: %.3f, restitution: %.3f}",
                  pick(&random, -0.2, 0.2), friction, restitution);
+    // the ones of some scenes move
+    char path[100] = "";
+    if (seed % 3 == 0)
+        snprintf(path, sizeof path, ", path: {amplitude: [%.3f, %.3f, 0], frequency: 1.5}", pick(&random, -0.1, 0.1),
+                 pick(&random, -0.05, 0.05));
     snprintf(
         text, size,
         "name: r%d\n%s\nsprings: {stiffness: %.1f, shear: %.1f, damping: %.3f}\ngravity: [0, -9.81, 0]\ndrag: %.2f\n"
-        "colliders: [{%s}]\ntime: {duration: 0.6, fps: 60}\ntruth: trajectory\n",
+        "colliders: [{%s%s}]\ntime: {duration: 0.6, fps: 60}\ntruth: trajectory\n",
         (int)seed, body, pick(&random, 50, 300), *body == 'c' ? pick(&random, 20, 100) : 0, pick(&random, 0, 0.05),
-        pick(&random, 0, 2), collider);
+        pick(&random, 0, 2), collider, path);
 }
 
 static double apart(const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other, int last) {
@@ -111,14 +116,14 @@ static void test_random_scenes(void **state) {
         const ck_Model *model = &fixture.model;
         if (ck_reference_path_create(&path, model, &error)) fail_msg("%s\n%s", error.message, text);
         fixture_run(&coarse, model, engine, &(ck_Settings){.substeps = 512}, NULL);
-        fixture_run(&fine, model, engine, &(ck_Settings){.substeps = 1024}, NULL);
+        fixture_run(&fine, model, engine, &(ck_Settings){.substeps = 4096}, NULL);
         const double own = apart(model, &coarse, &fine, path.horizon),
                      off = apart(model, &fine, &path.fine, path.horizon);
         whole += path.horizon == model->frame_count;
         print_message("%2d: %.1e apart, own step %.1e, reference %.1e up to frame %d\n", (int)seed, off, own,
                       path.agreement, path.horizon);
-        // of a method of the first order in contact the next halving is as far again; events scatter that
-        if (!(off <= 4 * own + 2 * path.agreement)) fail_msg("seed %d is %.2g apart\n%s", (int)seed, off, text);
+        // at an eighth of the step a method of order a half, the least that events leave, is off by half of that
+        if (!(off <= 2 * own + 2 * path.agreement)) fail_msg("seed %d is %.2g apart\n%s", (int)seed, off, text);
         ck_trajectory_free(&coarse);
         ck_trajectory_free(&fine);
         ck_reference_path_free(&path);
@@ -128,7 +133,52 @@ static void test_random_scenes(void **state) {
     assert_true(whole >= 0.9 * SEEDS);
 }
 
+#define ROPE_ON_A_BALL                                                                                                 \
+    "name: g\nrope: {particles: 9, spacing: 0.1, mass: 0.09, along: [1, 0, 0.1], origin: [-0.387, 0.35, 0.03]}\n"      \
+    "springs: {stiffness: 200, damping: 0.05}\ngravity: [0, -9.81, 0]\ntime: {duration: 0.5, fps: 60}\n"
+
+// Galileo: a ball that goes at one speed does to a body what one at rest does to a body that comes at it.
+static void test_from_the_ball(void **state) {
+    (void)state;
+    Fixture moving, coming;
+    fixture_load(&moving, ROPE_ON_A_BALL "colliders: [{sphere: {center: [0, 0, 0], radius: 0.3, friction: 0.5, "
+                                         "restitution: 0.2}, path: {velocity: [0.5, 0.1, 0]}}]\n");
+    fixture_load(&coming, ROPE_ON_A_BALL "colliders: [{sphere: {center: [0, 0, 0], radius: 0.3, friction: 0.5, "
+                                         "restitution: 0.2}}]\nvelocity: [-0.5, -0.1, 0]\n");
+    // to rounding where contact is of the bridge's own making; ODE's joints are soft. Bullet's deformable worlds and
+    // MuJoCo look for contact by speeds, which differ.
+    static const struct {
+        const char *engine;
+        double tolerance;
+    } engines[] = {{"native-verlet", 1e-10}, {"native-xpbd", 1e-10}, {"native-bars", 1e-10},
+                   {"bullet-pbd", 1e-10},    {"ode-direct", 1e-4},   {"ode-quick", 1e-4}};
+    for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
+        const ck_Engine *engine = ck_engine_find(engines[i].engine);
+        ck_Trajectory one, other;
+        ck_Settings settings = {.substeps = 64};
+        double largest = 0;
+        fixture_run(&one, &moving.model, engine, &settings, NULL);
+        fixture_run(&other, &coming.model, engine, &settings, NULL);
+        for (int frame = 0; frame <= moving.model.frame_count; frame++)
+            for (int p = 0; p < moving.model.particle_count; p++) {
+                double apart[3];
+                ck_subtract(apart, ck_trajectory_position(&one, frame) + 3 * p,
+                            ck_trajectory_position(&other, frame) + 3 * p);
+                apart[0] -= 0.5 * frame / 60;
+                apart[1] -= 0.1 * frame / 60;
+                largest = fmax(largest, ck_length(apart));
+            }
+        print_message("%-16s %.1e m\n", engine->name, largest);
+        assert_near(engine->name, largest, 0, engines[i].tolerance);
+        ck_trajectory_free(&one);
+        ck_trajectory_free(&other);
+    }
+    fixture_free(&moving);
+    fixture_free(&coming);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_random_scenes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_random_scenes),
+                                       cmocka_unit_test(test_from_the_ball)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
