@@ -58,7 +58,8 @@ class Replay {
 		this.data = parseReplay(bytes);
 		this.range = range;
 		this.world = new THREE.Scene();
-		this.world.add(makeColliders(this.data));
+		this.colliders = makeColliders(this.data);
+		this.world.add(this.colliders);
 		this.bodies = new Map([...this.data.paths.keys()].map((name) => [name, makeBody(this.data, name === "truth")]));
 		for (const body of this.bodies.values()) this.world.add(body.group);
 		this.strains = new Float32Array(this.data.particles);
@@ -119,6 +120,7 @@ class Replay {
 		const isOver = document.getElementById("replay-layout").value === "over";
 		const byEngine = document.getElementById("replay-color").value === "engine" || !this.data.rests.length;
 		document.getElementById("replay-now").textContent = time.toFixed(3) + " s";
+		moveColliders(this.colliders, time);
 		for (const [name, body] of this.bodies) {
 			showBody(this.data, body, this.data.paths.get(name), time);
 			if (name !== "truth") paintBody(this.data, body, this.strains, this.range, byEngine ? looks.get(name).color : null);

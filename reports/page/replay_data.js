@@ -26,11 +26,13 @@ function positionsOf(codes, least, largest) {
 
 function parseHeader(text) {
 	const header = { paths: [], planes: [], spheres: [] };
+	let last = [];
 	for (const line of text.split("\n")) {
 		const [key, ...words] = line.split(" ");
 		if (key === "path") header.paths.push(words[0]);
-		else if (key === "plane") header.planes.push(words.map(Number));
-		else if (key === "sphere") header.spheres.push(words.map(Number));
+		else if (key === "plane") header.planes.push(last = words.map(Number));
+		else if (key === "sphere") header.spheres.push(last = words.map(Number));
+		else if (key === "moves") last.moves = words.map(Number);
 		else if (["columns", "particles", "springs", "triangles", "frames"].includes(key)) header[key] = Number(words[0]);
 	}
 	return header;
@@ -64,6 +66,14 @@ function parseReplay(buffer) {
 		replay.paths.set(name, positionsOf(codes, least, largest));
 	}
 	return replay;
+}
+
+// How far a collider has come at a time: of [t, x, y, z, …], on straight lines.
+function movedAt(moves, time) {
+	let i = 0;
+	while (i < moves.length - 8 && moves[i + 4] <= time) i += 4;
+	const share = Math.min(1, Math.max(0, (time - moves[i]) / (moves[i + 4] - moves[i])));
+	return [1, 2, 3].map((axis) => (1 - share) * moves[i + axis] + share * moves[i + 4 + axis]);
 }
 
 // Positions at a time, between frames on straight lines. Into out [3·particles].

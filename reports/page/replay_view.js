@@ -100,19 +100,32 @@ function showBody(replay, body, path, time) {
 function makeColliders(replay) {
 	const group = new THREE.Group();
 	const size = boundsOf(replay, [...replay.paths.keys()].slice(-1)).getSize(new THREE.Vector3()).length();
-	for (const [x, y, z, radius] of replay.spheres) {
+	const place = (object, collider) => {
+		object.position.set(...collider.slice(0, 3));
+		object.userData = { at: collider.slice(0, 3), moves: collider.moves };
+		group.add(object);
+	};
+	for (const collider of replay.spheres) {
+		const radius = collider[3];
 		const ball = new THREE.Mesh(new THREE.SphereGeometry(0.99 * radius, 24, 16),
 			new THREE.MeshBasicMaterial({ color: 0x9aa7b5, wireframe: true, transparent: true, opacity: 0.5 }));
-		ball.position.set(x, y, z);
-		group.add(ball);
+		place(ball, collider);
 	}
-	for (const [x, y, z, nx, ny, nz] of replay.planes) {
+	for (const collider of replay.planes) {
 		const grid = new THREE.GridHelper(2 * size, 20, 0xb0b8c0, 0xd5dae0);
-		grid.position.set(x, y, z);
-		grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(nx, ny, nz));
-		group.add(grid);
+		grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(...collider.slice(3)));
+		place(grid, collider);
 	}
 	return group;
+}
+
+// Moves the colliders that move to a time.
+function moveColliders(group, time) {
+	for (const { position, userData } of group.children) {
+		if (!userData.moves) continue;
+		const moved = movedAt(userData.moves, time);
+		position.set(...userData.at.map((start, axis) => start + moved[axis]));
+	}
 }
 
 // The least and largest corner of where paths go: what the camera looks at.

@@ -1,6 +1,7 @@
 #include "tables.h"
 
 #include "files.h"
+#include "path.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -31,6 +32,24 @@ static bool is_drawn(const ck_Spring *spring) {
     return spring->kind == CK_STRUCTURAL;
 }
 
+// Room in the header for the motion of colliders, letters, and what a place of it takes.
+#define MOST_MOTION 5000
+#define PLACE_LETTERS 50
+
+// How far a collider has come at even times, which are joined by straight lines.
+static void write_motion(FILE *file, const ck_Model *model, const ck_Path *path) {
+    const int places = (int)fmin(32, MOST_MOTION / PLACE_LETTERS / model->path_count);
+    if (places < 2) return;
+    fprintf(file, "moves");
+    for (int i = 0; i < places; i++) {
+        const double time = model->duration * i / (places - 1);
+        double moved[3], v[3], a[3];
+        ck_path_at(path, time, -1, moved, v, a);
+        fprintf(file, " %.5g %.5g %.5g %.5g", time, moved[0], moved[1], moved[2]);
+    }
+    fprintf(file, "\n");
+}
+
 // stay, names: paths of an older replay, which come first; a name ends with its line.
 static void write_header(FILE *file, const ck_Comparison *comparison, int frames, int stay, const char *const *names) {
     const ck_Model *model = &comparison->model;
@@ -54,6 +73,7 @@ static void write_header(FILE *file, const ck_Comparison *comparison, int frames
             fprintf(file, "sphere %g %g %g %g\n", point[0], point[1], point[2], collider->radius);
         else
             fprintf(file, "plane %g %g %g %g %g %g\n", point[0], point[1], point[2], normal[0], normal[1], normal[2]);
+        if (collider->path) write_motion(file, model, collider->path);
     }
     fprintf(file, "data\n");
 }

@@ -62,9 +62,11 @@ static bool read_path(const char **line, const char *first) {
     return !strncmp(whole, "\npath ", strlen("\npath ")) && is_plain && is_new;
 }
 
-// "plane" or "sphere" and its numbers.
+// "plane" or "sphere" and its numbers; or "moves", of the one before, and times and places.
 static bool read_collider(const char **line) {
     int numbers = !strncmp(*line, "plane ", 6) ? 6 : !strncmp(*line, "sphere ", 7) ? 4 : 0;
+    if (!strncmp(*line, "moves ", 6))
+        for (const char *letter = *line; *letter && *letter != '\n'; letter++) numbers += *letter == ' ';
     const char *at = strchr(*line, ' ');
     for (int i = 0; i < numbers; i++) {
         char *end;

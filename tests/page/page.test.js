@@ -253,6 +253,14 @@ test("the replay holds the runs' positions", async () => {
 	});
 });
 
+test("a collider that moves is where its path takes it", async () => {
+	const places = await page.evaluate(() => {
+		const { spheres: [ball], planes: [floor] } = parseHeader("plane 0 0 0 0 1 0\nsphere 1 2 3 0.5\nmoves 0 0 0 0 1 0 2 0 2 0 2 4\ndata\n");
+		return [floor.moves ?? null, movedAt(ball.moves, 0.25), movedAt(ball.moves, 1.5), movedAt(ball.moves, 9)];
+	});
+	assert.deepEqual(places, [null, [0, 0.5, 0], [0, 2, 2], [0, 2, 4]]);
+});
+
 // What the replay shows, and how many of its pixels are not paper.
 async function picture() {
 	await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
