@@ -9,6 +9,7 @@
 #include "rest_forms.h"
 #include "roots.h"
 #include "runge_kutta.h"
+#include "swing_forms.h"
 #include "truth_cache.h"
 #include "vector.h"
 
