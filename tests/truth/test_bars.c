@@ -149,6 +149,63 @@ static void test_pulled(void **state) {
     close_path(&fixture, &path);
 }
 
+// The time in which the free end of a folded chain of length 1 falls so far, by v² = g·y·(2 − y)/(1 − y) of one that is
+// fine and loses nothing. Source: Calkin and March 1989.
+static double folded_time(double fallen) {
+    double time = 0;
+    const int steps = 100000;
+    // y = u²·fallen, so that the root at the start is none
+    for (int i = 0; i < steps; i++) {
+        const double u = (i + 0.5) / steps, y = u * u * fallen;
+        time += 2 * u * fallen / steps / sqrt(9.81 * y * (2 - y) / (1 - y));
+    }
+    return time;
+}
+
+// A chain that hangs folded from its two ends, one of which is let go, which falls faster than free; of so many bars.
+static double folded_fall(int half, double time) {
+    const int particles = 2 * half + 2;
+    const double bar = 1.0 / (2 * half + 1);
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    fprintf(out, "name: u\nnetwork:\n  nodes: [");
+    for (int i = 0; i < particles; i++) {
+        const bool is_left = i <= half;
+        fprintf(out, "%s{at: [%.17g, %.17g, 0], mass: 0.01}", i ? ", " : "", is_left ? 0 : bar,
+                -bar * (is_left ? i : particles - 1 - i));
+    }
+    fprintf(out, "]\n  bars: [");
+    for (int i = 1; i < particles; i++) fprintf(out, "%s[%d, %d]", i > 1 ? ", " : "", i - 1, i);
+    fprintf(out,
+            "]\nsprings: {rigid: true}\npins: ['0']\ngravity: [0, -9.81, 0]\ntime: {duration: %.17g, fps: %.17g}\n",
+            time, 40 / time);
+    fclose(out);
+    Fixture fixture;
+    ck_ReferencePath path;
+    open_path(&fixture, &path, text);
+    const double fallen = -ck_trajectory_position(&path.fine, 40)[3 * (particles - 1) + 1];
+    print_message("%d bars: fallen %.5f, horizon %d of 40\n", particles - 1, fallen, path.horizon);
+    close_path(&fixture, &path);
+    free(text);
+    return fallen;
+}
+
+static void test_folded_chain(void **state) {
+    (void)state;
+    const double fallen = 0.6, time = folded_time(fallen);
+    print_message("time %.5f s, of free fall %.5f s\n", time, sqrt(2 * fallen / 9.81));
+    double off = 1;
+    for (int half = 5; half <= 40; half *= 2) {
+        const double now = folded_fall(half, time);
+        // faster than what falls freely, and nearer to the fine chain the finer it is: by a power of its bars' length
+        assert_true(now > 0.5 * 9.81 * time * time);
+        assert_true(fallen - now > 0 && fallen - now < off / 1.3);
+        off = fallen - now;
+    }
+    assert_true(off < 0.025);
+}
+
 // The bars of a triangle pinned at all its corners hold one another.
 static void test_refused(void **state) {
     (void)state;
@@ -167,6 +224,7 @@ static void test_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_level_rope), cmocka_unit_test(test_double_pendulum),
                                        cmocka_unit_test(test_whirl),      cmocka_unit_test(test_moved_pin),
-                                       cmocka_unit_test(test_pulled),     cmocka_unit_test(test_refused)};
+                                       cmocka_unit_test(test_pulled),     cmocka_unit_test(test_folded_chain),
+                                       cmocka_unit_test(test_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
