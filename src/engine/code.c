@@ -211,14 +211,18 @@ void ck_code_fill(FILE *out, const ck_Code *code) {
     fill(out, code, NULL);
 }
 
+bool ck_code_knows(const ck_Engine *engine, const ck_Model *model) {
+    const unsigned beyond =
+        CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
+    return engine->code && !(model->terms & beyond);
+}
+
 ck_Status ck_code_write(FILE *out, const ck_Engine *engine, const ck_Model *model, const ck_Settings *used,
                         const char *path, ck_Error *error) {
     ck_Code code = {0};
     ck_ScaledModel scaled = {0};
     if (!engine->code) return ck_fail(error, CK_BAD_INPUT, "%s has no program to paste", engine->name);
-    const unsigned beyond =
-        CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
-    if (model->terms & beyond)
+    if (!ck_code_knows(engine, model))
         return ck_fail(error, CK_BAD_INPUT,
                        "%s: the programs to paste know no bending, no wind, no slack springs and nothing that moves; "
                        "leave them out",

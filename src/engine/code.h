@@ -39,6 +39,9 @@ void ck_code_fill(FILE *out, const ck_Code *code);
 
 struct ck_Engine;
 
+// True where an engine has a program that knows all of a scene.
+bool ck_code_knows(const struct ck_Engine *engine, const ck_Model *model);
+
 // Writes the program of an engine on a scene's model with settings that the engine has used.
 //   path  of the scene, for its comments
 // Errors: CK_BAD_INPUT where the engine has no such program; CK_NO_MEMORY, CK_IO.

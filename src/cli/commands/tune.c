@@ -170,7 +170,7 @@ static ck_Status show_tuning(const ck_StudyCommand *command, const ck_Tuning *tu
     ck_answer_line(answer, CK_ANSWER_FILES, "%s/tune.csv", command->arguments->out);
     ck_answer_line(answer, CK_ANSWER_NEXT, "clothcheck run %s --engine %s%s", command->comparison->path,
                    options->engine->name, sets);
-    if (options->engine->code)
+    if (ck_code_knows(options->engine, &command->comparison->model))
         ck_answer_line(answer, CK_ANSWER_NEXT, "clothcheck code %s --engine %s%s", command->comparison->path,
                        options->engine->name, sets);
     return status;
