@@ -165,7 +165,7 @@ static void put_moves(Writer *writer, const ck_Model *model) {
 
 // A closed form is of a rope or a cloth by that name, which a network is not.
 static bool truth_goes_along(const ck_Model *model) {
-    static const char *const general[] = {"equilibrium", "trajectory", "rest"};
+    static const char *const general[] = {"equilibrium", "trajectory", "converged", "rest"};
     for (size_t i = 0; model->truth && i < sizeof general / sizeof *general; i++)
         if (!strcmp(model->truth, general[i])) return true;
     return false;
@@ -241,32 +241,30 @@ static void write_path(FILE *out, const ck_Path *path) {
     for (int i = 0; i < path->point_count; i++) line(out, "", path->points[i], 4);
 }
 
-void ck_export_lines(FILE *out, const ck_Model *model) {
-    fprintf(out, "frames %d\n", model->frame_count);
-    line(out, "step", &model->step, 1);
-    line(out, "size", &model->size, 1);
-    line(out, "spacing", &model->spacing, 1);
-    line(out, "gravity", model->gravity, 3);
-    line(out, "force", model->force, 3);
-    line(out, "drag", &model->drag, 1);
+static void write_particles(FILE *out, const ck_Model *model) {
     fprintf(out, "particles %d\n", model->particle_count);
     for (int i = 0; i < model->particle_count; i++) {
         const double *x = model->position + 3 * i, *v = model->velocity + 3 * i;
         fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %d\n", x[0], x[1], x[2], v[0], v[1], v[2],
                 model->mass[i], model->pinned[i]);
     }
+}
+
+static void write_springs(FILE *out, const ck_Model *model) {
+    int slack = 0;
     fprintf(out, "springs %d\n", model->spring_count);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
+        slack += spring->pulls_only;
         fprintf(out, "%d %d %.17g %.17g %.17g %s\n", spring->a, spring->b, spring->rest, spring->stiffness,
                 spring->damping, ck_export_kinds[spring->kind]);
     }
-    // only who said that it models these is told of them
-    int slack = 0;
-    for (int i = 0; i < model->spring_count; i++) slack += model->springs[i].pulls_only;
     if (slack) fprintf(out, "slack %d\n", slack);
     for (int i = 0; i < model->spring_count && slack; i++)
         if (model->springs[i].pulls_only) fprintf(out, "%d\n", i);
+}
+
+static void write_hinges(FILE *out, const ck_Model *model) {
     if (model->hinge_count) fprintf(out, "hinges %d\n", model->hinge_count);
     for (int i = 0; i < model->hinge_count; i++) {
         const ck_Hinge *hinge = &model->hinges[i];
@@ -275,37 +273,62 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
         fprintf(out, "%d %d %d %d", hinge->particles[0], hinge->particles[1], hinge->particles[2], hinge->particles[3]);
         line(out, "", numbers, 6);
     }
-    if (model->wind.face_count) {
-        const ck_Wind *wind = &model->wind;
-        const double numbers[] = {wind->velocity[0], wind->velocity[1], wind->velocity[2],
-                                  wind->density,     wind->drag,        wind->lift};
-        line(out, "wind", numbers, 6);
-        fprintf(out, "faces %d\n", wind->face_count);
-        for (int i = 0; i < wind->face_count; i++)
-            fprintf(out, "%d %d %d\n", wind->faces[i][0], wind->faces[i][1], wind->faces[i][2]);
-    }
+}
+
+static void write_wind(FILE *out, const ck_Wind *wind) {
+    const double numbers[] = {wind->velocity[0], wind->velocity[1], wind->velocity[2],
+                              wind->density,     wind->drag,        wind->lift};
+    if (!wind->face_count) return;
+    line(out, "wind", numbers, 6);
+    fprintf(out, "faces %d\n", wind->face_count);
+    for (int i = 0; i < wind->face_count; i++)
+        fprintf(out, "%d %d %d\n", wind->faces[i][0], wind->faces[i][1], wind->faces[i][2]);
+}
+
+static void write_moves(FILE *out, const ck_Model *model) {
     if (model->driven_count) fprintf(out, "moves %d\n", model->driven_count);
     for (int i = 0; i < model->driven_count; i++) {
         fprintf(out, "%d %.17g ", model->driven[i].particle, model->driven[i].until);
         write_path(out, model->driven[i].path);
     }
+}
+
+static void write_colliders(FILE *out, const ck_Model *model) {
+    int moving = 0;
     fprintf(out, "colliders %d\n", model->collider_count);
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider *collider = &model->colliders[i];
         const double *at = collider->point, *n = collider->normal;
         const double ball[] = {at[0], at[1], at[2], collider->radius, collider->restitution, collider->friction},
                      plane[] = {at[0], at[1], at[2], n[0], n[1], n[2], collider->restitution, collider->friction};
+        moving += collider->path != NULL;
         if (collider->shape == CK_SPHERE)
             line(out, "sphere", ball, 6);
         else
             line(out, "plane", plane, 8);
     }
-    int moving = 0;
-    for (int i = 0; i < model->collider_count; i++) moving += model->colliders[i].path != NULL;
     if (moving) fprintf(out, "moving %d\n", moving);
     for (int i = 0; i < model->collider_count; i++) {
         if (!model->colliders[i].path) continue;
         fprintf(out, "%d ", i);
         write_path(out, model->colliders[i].path);
     }
+}
+
+// What a scene lacks of slack springs, hinges, wind and motion has no line: a program that says that it models none of
+// them need not know their words.
+void ck_export_lines(FILE *out, const ck_Model *model) {
+    fprintf(out, "frames %d\n", model->frame_count);
+    line(out, "step", &model->step, 1);
+    line(out, "size", &model->size, 1);
+    line(out, "spacing", &model->spacing, 1);
+    line(out, "gravity", model->gravity, 3);
+    line(out, "force", model->force, 3);
+    line(out, "drag", &model->drag, 1);
+    write_particles(out, model);
+    write_springs(out, model);
+    write_hinges(out, model);
+    write_wind(out, &model->wind);
+    write_moves(out, model);
+    write_colliders(out, model);
 }
