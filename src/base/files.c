@@ -29,6 +29,10 @@ ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *e
     return status;
 }
 
+size_t ck_text_mark(const char *bytes, size_t size) {
+    return size >= 3 && !memcmp(bytes, "\xef\xbb\xbf", 3) ? 3 : 0;
+}
+
 char *ck_path_join(const char *directory, const char *name) {
     char *path;
     return asprintf(&path, "%s/%s", directory, name) < 0 ? NULL : path;

@@ -12,6 +12,9 @@
 // Reads a whole file, and a zero after it. Errors: CK_IO, CK_NO_MEMORY. Free *bytes in any case.
 ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *error);
 
+// How many bytes at the start of a text are the byte-order mark that spreadsheets put there: 0 or 3.
+size_t ck_text_mark(const char *bytes, size_t size);
+
 // Paths in the file system.
 
 // directory/name. NULL when out of memory. Free the result.

@@ -2,6 +2,7 @@
 
 #include "body.h"
 #include "collider.h"
+#include "path.h"
 #include "scene.h"
 #include "vector.h"
 
@@ -205,17 +206,35 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
     return CK_OK;
 }
 
-// A pin that stays may be inside a collider; what is free there, or let go, would be thrown out.
-static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-    for (int i = 0; i < model->collider_count; i++) {
-        char path[32];
-        snprintf(path, sizeof path, "colliders[%d]", i);
-        for (int j = 0; j < model->particle_count; j++) {
-            double normal[3], gap = ck_collider_gap(&model->colliders[i], model->position + 3 * j, normal);
-            if (!ck_model_is_held(model, j) && gap < -1e-9 * model->spacing)
+// Where a particle is when it is first free, and when that is.
+static double first_free(const ck_Model *model, int particle, double *position) {
+    memcpy(position, model->position + 3 * particle, 3 * sizeof(double));
+    if (!model->pinned[particle]) return 0;
+    for (int i = 0; i < model->driven_count; i++)
+        if (model->driven[i].particle == particle) ck_driven_at(&model->driven[i], model->driven[i].until, position);
+    return ck_model_release_time(model, particle);
+}
+
+ck_Status ck_model_check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    for (int i = 0; i < model->particle_count * (model->collider_count > 0); i++) {
+        double position[3], normal[3], speed[3], gain[3];
+        if (ck_model_is_held(model, i)) continue;
+        const double time = first_free(model, i, position);
+        for (int j = 0; j < model->collider_count; j++) {
+            const ck_Collider there = ck_collider_at(&model->colliders[j], time, -1, speed, gain);
+            const double gap = ck_collider_gap(&there, position, normal);
+            char path[32];
+            snprintf(path, sizeof path, "colliders[%d]", j);
+            if (!(gap < -1e-9 * model->spacing)) continue;
+            if (time > 0)
                 return ck_scene_fail(scene, path, error,
-                                     "particle %d starts %g m inside this collider; move the body or the collider", j,
-                                     -gap);
+                                     "particle %d is %g m inside this collider when it is let go, at %g s; move one of "
+                                     "them, or let it go elsewhere",
+                                     i, -gap, time);
+            return ck_scene_fail(scene, path, error, "particle %d starts %g m inside this collider%s; move %s", i, -gap,
+                                 model->starts_settled ? ", of which a start at equilibrium knows nothing" : "",
+                                 model->starts_settled ? "the collider, or let the body fall on it"
+                                                       : "the body or the collider");
         }
     }
     return CK_OK;
@@ -299,7 +318,8 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
     if (status) return status;
     ck_model_add_noise(model, scene);
-    status = check_outside(model, scene, error);
+    // of a start at equilibrium it is asked once that is known
+    if (!model->starts_settled) status = ck_model_check_outside(model, scene, error);
     if (status) return status;
     set_fields(model, scene->file);
     status = set_node_velocity(model, scene, error);
@@ -342,6 +362,13 @@ void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor)
         springs[i].stiffness *= factor;
     }
     copy->springs = springs;
+}
+
+double ck_model_release_time(const ck_Model *model, int particle) {
+    for (int i = 0; i < model->release_count; i++)
+        for (int j = 0; j < model->releases[i].particle_count; j++)
+            if (model->releases[i].particles[j] == particle) return model->releases[i].frame * model->step;
+    return INFINITY;
 }
 
 bool ck_model_is_held(const ck_Model *model, int particle) {

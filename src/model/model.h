@@ -167,6 +167,13 @@ void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor)
 // True for a particle that is pinned from start to end.
 bool ck_model_is_held(const ck_Model *model, int particle);
 
+// When a pin is let go, between which frames that is, s; INFINITY: never.
+double ck_model_release_time(const ck_Model *model, int particle);
+
+// Errors: CK_BAD_INPUT at a collider's place where a particle is inside of it once it is free: at the start, or when
+// its pin is let go. A pin that stays may be there.
+ck_Status ck_model_check_outside(const ck_Model *model, const struct ck_Scene *scene, ck_Error *error);
+
 // 1/mass, or 0 where pinned, in 1/kg.
 double ck_model_inverse_mass(const ck_Model *model, int particle);
 

@@ -70,6 +70,35 @@ double ck_path_next_jump(const ck_Path *path, double time) {
     return after < path->to ? path->to : INFINITY;
 }
 
+// The largest acceleration of points, m/s², and half of how far they reach, m.
+static double bend_of(const ck_Path *path, double *reach) {
+    double largest = 0;
+    *reach = 0;
+    for (int i = 0; i < path->point_count; i++) {
+        double from[3], moved[3], velocity[3], acceleration[3];
+        ck_subtract(from, path->points[i] + 1, path->points[0] + 1);
+        *reach = fmax(*reach, 0.5 * ck_length(from));
+        for (int side = -1; side <= 1; side += 2) {
+            along_points(path, path->points[i][0], side, moved, velocity, acceleration);
+            largest = fmax(largest, ck_length(acceleration));
+        }
+    }
+    return largest;
+}
+
+double ck_path_longest_step(const ck_Model *model) {
+    double longest = INFINITY;
+    for (int i = 0; i < model->path_count; i++) {
+        const ck_Path *path = &model->paths[i];
+        double reach;
+        if (path->kind == CK_PATH_SINE) longest = fmin(longest, 1 / (20 * path->frequency));
+        if (path->kind != CK_PATH_POINTS) continue;
+        const double bend = bend_of(path, &reach);
+        if (bend > 0) longest = fmin(longest, 2 * pi / 20 * sqrt(reach / bend));
+    }
+    return longest;
+}
+
 bool ck_driven_jump(const ck_Model *model, double time) {
     bool jumps = false;
     for (int i = 0; i < model->path_count; i++) {

@@ -17,6 +17,10 @@ void ck_path_at(const ck_Path *path, double time, int side, double *moved, doubl
 // The next time after this one, s, at which a path's velocity or acceleration jumps; INFINITY: it never does again.
 double ck_path_next_jump(const ck_Path *path, double time);
 
+// The longest step, s, that follows all paths: a twentieth of a sine's period, where the chord from one step to the
+// next leaves out (2π/20)²/8 = 1.2 % of its amplitude, and as much of points. INFINITY: nothing turns.
+double ck_path_longest_step(const ck_Model *model);
+
 // True where the velocity of any pin that moves jumps at that time.
 bool ck_driven_jump(const ck_Model *model, double time);
 

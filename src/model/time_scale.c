@@ -1,6 +1,7 @@
 #include "time_scale.h"
 
 #include "hinges.h"
+#include "path.h"
 #include "shape.h"
 #include "vector.h"
 #include "wind.h"
@@ -163,7 +164,7 @@ double ck_stability_drag_time(const ck_Model *model, double share) {
 
 uint32_t ck_stability_substeps(const ck_Model *model, double limit) {
     // a hair of slack, so that a limit of exactly one frame asks for one substep
-    double count = ceil(model->step / limit * (1 - 1e-12));
+    double count = ceil(model->step / fmin(limit, ck_path_longest_step(model)) * (1 - 1e-12));
     return (uint32_t)fmax(1, fmin(count, 100000));
 }
 

@@ -61,7 +61,7 @@ double ck_stability_bending_time(const ck_Model *model);
 // The longest step, in s, in which drag takes no more than share of a speed; INFINITY without drag.
 double ck_stability_drag_time(const ck_Model *model, double share);
 
-// How many equal substeps of at most limit seconds make one frame: at least 1, at most 100000.
+// How many equal substeps of at most limit seconds, that follow what moves, make one frame: at least 1, at most 100000.
 uint32_t ck_stability_substeps(const ck_Model *model, double limit);
 
 #ifdef __cplusplus

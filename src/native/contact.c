@@ -24,21 +24,53 @@ ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double 
     return CK_OK;
 }
 
-void ck_contact_follow(ck_Contact *contact, double time) {
-    const double dt = contact->dt;
-    contact->elapsed = 0;
-    for (int i = 0; i < contact->model->collider_count && contact->motion; i++) {
+static double next_jump(const ck_Contact *contact, double time) {
+    double next = INFINITY;
+    for (int i = 0; i < contact->model->collider_count; i++)
+        if (contact->model->colliders[i].path)
+            next = fmin(next, ck_path_next_jump(contact->model->colliders[i].path, time));
+    return next;
+}
+
+// From so much of the substep, s, to its end or the next jump.
+static void follow_from(ck_Contact *contact, double from) {
+    const double dt = contact->dt, start = contact->begun + from;
+    double until = next_jump(contact, start) - contact->begun, none[3], other[3], end[3];
+    if (until > dt * (1 - 1e-9)) until = dt;
+    contact->from = from;
+    contact->until = until;
+    for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Path *path = contact->model->colliders[i].path;
         ck_Motion *motion = &contact->motion[i];
-        double end[3], none[3], other[3];
-        memset(motion, 0, sizeof *motion);
         if (!path) continue;
-        ck_path_at(path, time, 1, motion->moved, motion->velocity, other);
-        ck_path_at(path, time + dt, -1, end, none, other);
-        for (int axis = 0; axis < 3; axis++)
-            motion->acceleration[axis] =
-                2 * (end[axis] - motion->moved[axis] - dt * motion->velocity[axis]) / (dt * dt);
+        ck_path_at(path, start, 1, motion->moved, motion->velocity, other);
+        ck_path_at(path, contact->begun + until, -1, end, none, other);
+        const double time = until - from;
+        for (int axis = 0; axis < 3; axis++) {
+            const double speed = motion->velocity[axis],
+                         gain = 2 * (end[axis] - motion->moved[axis] - time * speed) / (time * time);
+            motion->acceleration[axis] = gain;
+            motion->velocity[axis] -= from * gain;
+            motion->moved[axis] -= from * (speed - 0.5 * from * gain);
+        }
     }
+}
+
+void ck_contact_follow(ck_Contact *contact, double time) {
+    if (!contact->motion) return;
+    memset(contact->motion, 0, sizeof *contact->motion * (size_t)contact->model->collider_count);
+    contact->elapsed = 0;
+    contact->begun = time;
+    for (int i = 0; i < contact->model->collider_count; i++) {
+        const ck_Path *path = contact->model->colliders[i].path;
+        ck_Motion *motion = &contact->motion[i];
+        double start[3], none[3], other[3];
+        if (!path) continue;
+        ck_path_at(path, time, 1, start, none, other);
+        ck_path_at(path, time + contact->dt, -1, motion->end, none, other);
+        ck_subtract(motion->way, motion->end, start);
+    }
+    follow_from(contact, 0);
 }
 
 // A place, a speed and an acceleration as a collider sees them: where all stay, those of the caller, and else own.
@@ -283,8 +315,12 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
     double left_time = contact->dt, free_flight[3];
     memcpy(free_flight, v, sizeof free_flight);
     ck_add_scaled(free_flight, contact->dt, a);
+    if (moves && contact->from > 0) follow_from(contact, 0);
     for (int event = 0; left_time > 0 && event < MAX_EVENTS; event++) {
         double normal[3], left[3], time = left_time, elapsed = moves ? contact->dt - left_time : 0;
+        if (moves && contact->until < contact->dt && elapsed >= contact->until * (1 - 1e-12))
+            follow_from(contact, contact->until);
+        if (moves && contact->until < contact->dt) time = contact->until - elapsed;
         strike_touching(contact, x, v, a, elapsed, moves);
         const ck_Collider *carrier = support(contact, x, v, a, elapsed, moves, normal, left);
         const ck_Collider *seer = carrier ? carrier : contact->model->colliders;
@@ -321,6 +357,16 @@ void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, 
         advance(contact, mass, x, v, a, false);
 }
 
+// True where the collider's speed jumps within the substep, and not its acceleration alone.
+static bool jumps(const ck_Contact *contact, const ck_Collider *collider) {
+    const double time = contact->begun + contact->until;
+    double moved[3], before[3], after[3], none[3];
+    if (!collider->path || contact->until >= contact->dt) return false;
+    ck_path_at(collider->path, time, -1, moved, before, none);
+    ck_path_at(collider->path, time, 1, moved, after, none);
+    return ck_distance(before, after) > 1e-9 * (ck_length(before) + ck_length(after));
+}
+
 static inline __attribute__((always_inline)) bool impacts(const ck_Contact *contact, const double *x, const double *v,
                                                           const double *a, const bool moves) {
     double time = contact->dt, normal[3];
@@ -331,8 +377,9 @@ static inline __attribute__((always_inline)) bool impacts(const ck_Contact *cont
             Seen seen;
             see(&seen, contact, &contact->model->colliders[i], x, v, a, 0, moves);
             double gap = ck_collider_gap(&contact->model->colliders[i], seen.x, normal);
-            if (gap <= contact->slack && -ck_dot(seen.v, normal) > 2 * fabs(ck_dot(seen.a, normal)) * contact->dt)
-                return true;
+            if (gap > contact->slack) continue;
+            if (-ck_dot(seen.v, normal) > 2 * fabs(ck_dot(seen.a, normal)) * contact->dt) return true;
+            if (moves && jumps(contact, &contact->model->colliders[i])) return true;
         }
         return false;
     }
@@ -355,20 +402,16 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, doub
     bool pushed = false;
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
-        const double none[3] = {0};
-        Seen seen;
-        see(&seen, contact, collider, x, none, none, contact->dt, contact->motion != NULL);
-        double normal[3], along[3], way[3], before[3], gap = ck_collider_gap(collider, seen.x, normal);
+        const ck_Motion *motion = contact->motion ? motion_of(contact, collider) : NULL;
+        double normal[3], along[3], way[3], before[3], seen[3] = {x[0], x[1], x[2]};
+        if (motion) ck_add_scaled(seen, -1, motion->end);
+        const double gap = ck_collider_gap(collider, seen, normal);
         if (!(gap < 0)) continue;
         pushed = true;
         memcpy(before, x, sizeof before);
         ck_add_scaled(x, -gap, normal);
         ck_subtract(way, x, start);
-        if (contact->motion) {
-            const ck_Motion *motion = motion_of(contact, collider);
-            ck_add_scaled(way, -contact->dt, motion->velocity); // less the collider's own
-            ck_add_scaled(way, -0.5 * contact->dt * contact->dt, motion->acceleration);
-        }
+        if (motion) ck_add_scaled(way, -1, motion->way); // less the collider's own
         ck_tangential(along, way, normal);
         double sliding = ck_length(along);
         if (sliding > 0) ck_add_scaled(x, -fmin(1, collider->friction * -gap / sliding), along);

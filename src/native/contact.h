@@ -8,19 +8,22 @@
 
 #include "model.h"
 
-// Of a collider that moves: how far it has come at the start of a substep, m, its speed then, m/s, and the acceleration
-// that takes it to where it is at the end, m/s².
+// Of a collider that moves, from one jump of any collider's speed to the next: how far it has come, m, its speed, m/s,
+// and the acceleration that takes it to where it is then, m/s², all as it would have been at the start of the substep.
 typedef struct ck_Motion {
     double moved[3], velocity[3], acceleration[3];
+    double end[3], way[3]; // m: how far it has come at the end of the substep, and that less where it began
 } ck_Motion;
 
 typedef struct ck_Contact {
     const ck_Model *model;
-    double dt;         // s, one substep
-    double slack;      // m: closer than this is touching
-    double impulse[3]; // N·s, of all colliders on the body since it was last cleared
-    double elapsed;    // s of the substep, at which ck_contact_filter is asked; colliders that stay do not read it
-    ck_Motion *motion; // [colliders]; NULL: all stay
+    double dt;          // s, one substep
+    double slack;       // m: closer than this is touching
+    double impulse[3];  // N·s, of all colliders on the body since it was last cleared
+    ck_Motion *motion;  // [colliders]; NULL: all stay, and what follows is not read
+    double elapsed;     // s of the substep, at which ck_contact_filter is asked
+    double begun;       // s, of the substep
+    double from, until; // s of the substep, between which motion holds
 } ck_Contact;
 
 // Where colliders move: sets their motion in the substep that starts at a time, s. Contact is that of one at rest, seen

@@ -177,7 +177,7 @@ static ck_Status read_csv(Reader *reader, const char *bytes, size_t size) {
     struct csv_parser parser;
     if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI | CSV_APPEND_NULL))
         return ck_fail(reader->error, CK_NO_MEMORY, "%s: out of memory", reader->recording->path);
-    for (size_t at = 0; at < size && !reader->status;) {
+    for (size_t at = ck_text_mark(bytes, size); at < size && !reader->status;) {
         const char *newline = memchr(bytes + at, '\n', size - at);
         size_t length = newline ? (size_t)(newline - bytes) + 1 - at : size - at;
         reader->line++;

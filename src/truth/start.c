@@ -1,6 +1,5 @@
 #include "start.h"
 
-#include "collider.h"
 #include "equilibrium.h"
 
 #include <string.h>
@@ -9,19 +8,6 @@
 #define MOST_FRAMES 20000
 // Of the spacing, for a start that only symmetry holds up.
 #define NUDGE 1e-3
-
-static ck_Status check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-    for (int i = 0; i < model->particle_count; i++)
-        for (int j = 0; j < model->collider_count && !ck_model_is_held(model, i); j++) {
-            double normal[3], gap = ck_collider_gap(&model->colliders[j], model->position + 3 * i, normal);
-            if (gap < -1e-9 * model->spacing)
-                return ck_scene_fail(scene, "start", error,
-                                     "particle %d would rest %g m inside colliders[%d], which a start at equilibrium "
-                                     "knows nothing of; move the collider, or let the body fall on it",
-                                     i, -gap, j);
-        }
-    return CK_OK;
-}
 
 static ck_Status settle(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     ck_Model held = *model;
@@ -40,7 +26,7 @@ static ck_Status settle(ck_Model *model, const ck_Scene *scene, ck_Error *error)
     if (!status) memcpy(model->position, equilibrium.position, 3 * sizeof(double) * (size_t)model->particle_count);
     ck_equilibrium_free(&equilibrium);
     if (status == CK_REFUSED) return ck_scene_fail(scene, "start", error, "%s", why.message);
-    return status ? ck_fail(error, status, "%s", why.message) : check_outside(model, scene, error);
+    return status ? ck_fail(error, status, "%s", why.message) : ck_model_check_outside(model, scene, error);
 }
 
 ck_Status ck_start_build(ck_Model *model, const ck_Scene *scene, ck_Error *error) {

@@ -77,11 +77,15 @@ static void write_scene(char *text, size_t size, uint64_t seed) {
         snprintf(collider, sizeof collider,
                  "plane: {point: [0, 0.2, 0], normal: [%.3f, 1, 0.1], friction: %.3f, restitution: %.3f}",
                  pick(&random, -0.2, 0.2), friction, restitution);
-    // the ones of some scenes move
-    char path[100] = "";
+    // in some scenes it swings, in some it sets off and stops, under what lies on it by then
+    char path[120] = "";
     if (seed % 3 == 0)
         snprintf(path, sizeof path, ", path: {amplitude: [%.3f, %.3f, 0], frequency: 1.5}", pick(&random, -0.1, 0.1),
                  pick(&random, -0.05, 0.05));
+    if (seed % 3 == 1)
+        snprintf(path, sizeof path, ", path: {velocity: [%.3f, %.3f, 0], from: %.3f, to: %.3f}",
+                 pick(&random, -0.8, 0.8), pick(&random, -0.8, 0.8), pick(&random, 0.2, 0.35),
+                 pick(&random, 0.36, 0.55));
     snprintf(
         text, size,
         "name: r%d\n%s\nsprings: {stiffness: %.1f, shear: %.1f, damping: %.3f}\ngravity: [0, -9.81, 0]\ndrag: %.2f\n"
@@ -177,8 +181,114 @@ static void test_from_the_ball(void **state) {
     fixture_free(&coming);
 }
 
+static void make_path(ck_ReferencePath *path, const Fixture *fixture) {
+    ck_Error error = {0};
+    if (ck_reference_path_create(path, &fixture->model, &error)) fail_msg("%s", error.message);
+}
+
+// What lies on a lift that stops flies on: by v²/2g above it. Its speed jumps at a frame's end and within one.
+static void test_lift_that_stops(void **state) {
+    (void)state;
+    static const double stops[] = {0.4, 0.391};
+    for (int i = 0; i < 2; i++) {
+        char text[400];
+        Fixture fixture;
+        ck_ReferencePath path;
+        snprintf(text, sizeof text,
+                 "name: g\nnetwork: {nodes: [{at: [0, 0, 0], mass: 0.1}], size: 1, spacing: 0.1}\n"
+                 "gravity: [0, -9.81, 0]\ntime: {duration: 1, fps: 60}\n"
+                 "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0]}, path: {velocity: [0, 2, 0], to: %g}}]\n",
+                 stops[i]);
+        fixture_load(&fixture, text);
+        make_path(&path, &fixture);
+        for (int frame = 1; frame <= 60; frame++) {
+            const double since = frame / 60.0 - stops[i], floor = 2 * stops[i];
+            const double height =
+                since < 0 ? 2 * frame / 60.0 : fmax(floor, floor + 2 * since - 0.5 * 9.81 * since * since);
+            assert_near("height", ck_trajectory_position(&path.fine, frame)[1], height, 1e-12);
+        }
+        ck_reference_path_free(&path);
+        fixture_free(&fixture);
+    }
+}
+
+// A floor that starts towards what slides on it hits it: the impulse of the jump, and friction's share of that.
+static void test_floor_that_starts(void **state) {
+    (void)state;
+    const double mu = 0.3, jump = 0.5, start = 0.4, g = 9.81;
+    Fixture fixture;
+    ck_ReferencePath path;
+    fixture_load(&fixture, "name: u\nnetwork: {nodes: [{at: [0, 0, 0], mass: 0.1, velocity: [3, 0, 0]}], size: 1, "
+                           "spacing: 0.1}\ngravity: [0, -9.81, 0]\ntime: {duration: 0.6, fps: 60}\n"
+                           "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0], friction: 0.3}, path: {velocity: "
+                           "[0, 0.5, 0], from: 0.4}}]\n");
+    make_path(&path, &fixture);
+    for (int frame = 1; frame <= 36; frame++) {
+        const double time = frame / 60.0, since = fmax(0, time - start);
+        const double way = 3 * time - 0.5 * mu * g * time * time - mu * jump * since;
+        assert_near("way", ck_trajectory_position(&path.fine, frame)[0], way, 1e-12);
+        assert_near("height", ck_trajectory_position(&path.fine, frame)[1], jump * since, 1e-12);
+    }
+    ck_reference_path_free(&path);
+    fixture_free(&fixture);
+}
+
+// Points so dense that each is a step of its own: halving must halve those, too. The distance of the two paths, which
+// the method's order takes to a sixteenth of itself, is then no smaller than that to a path of far smaller steps.
+static void test_dense_points(void **state) {
+    (void)state;
+    char text[40000];
+    Fixture fixture;
+    ck_ReferencePath path;
+    ck_Trajectory finer;
+    int length = snprintf(text, sizeof text,
+                          "name: fc\nrope: {particles: 6, spacing: 0.1, mass: 0.06}\nsprings: {stiffness: 20}\n"
+                          "pins: [first]\ngravity: [0, -9.81, 0]\ntime: {duration: 1, fps: 10}\n"
+                          "moves: [{pins: [first], path: {points: [");
+    for (int i = 0; i <= 250; i++)
+        length += snprintf(text + length, sizeof text - (size_t)length, "%s[%.17g, 0, %.17g, 0]", i ? ", " : "",
+                           0.004 * i, 0.05 * sin(75 * 0.004 * i));
+    snprintf(text + length, sizeof text - (size_t)length, "]}}]\n");
+    fixture_load(&fixture, text);
+    make_path(&path, &fixture);
+    assert_int_equal(ck_reference_integrate(&finer, &fixture.model, 16 * path.substeps, 0, 0, NULL), CK_OK);
+    const double off = apart(&fixture.model, &path.fine, &finer, path.horizon);
+    print_message("agrees to %.1e, off by %.1e at %d substeps\n", path.agreement, off, path.substeps);
+    assert_true(path.agreement > 0);
+    assert_true(off <= path.agreement);
+    ck_trajectory_free(&finer);
+    ck_reference_path_free(&path);
+    fixture_free(&fixture);
+}
+
+// Between planes that close, nothing is known from some time on; that is said at once.
+static void test_closing_planes(void **state) {
+    (void)state;
+    static const double restitutions[] = {0, 0.999, 1};
+    for (int i = 0; i < 3; i++) {
+        char text[600];
+        Fixture fixture;
+        ck_ReferencePath path;
+        ck_Error error = {0};
+        snprintf(
+            text, sizeof text,
+            "name: h\nnetwork: {nodes: [{at: [0, 0.5, 0], mass: 0.1}], size: 1, spacing: 0.1}\n"
+            "time: {duration: 1, fps: 60}\ncolliders:\n"
+            "  - {plane: {point: [0, 0, 0], normal: [0, 1, 0], restitution: %g}, path: {velocity: [0, 0.6, 0]}}\n"
+            "  - {plane: {point: [0, 1, 0], normal: [0, -1, 0], restitution: %g}, path: {velocity: [0, -0.6, 0]}}\n",
+            restitutions[i], restitutions[i]);
+        fixture_load(&fixture, text);
+        assert_int_equal(ck_reference_path_create(&path, &fixture.model, &error), CK_REFUSED);
+        print_message("e = %g: %s\n", restitutions[i], error.message);
+        ck_reference_path_free(&path);
+        fixture_free(&fixture);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_random_scenes),
-                                       cmocka_unit_test(test_from_the_ball)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms),      cmocka_unit_test(test_random_scenes),
+                                       cmocka_unit_test(test_from_the_ball),     cmocka_unit_test(test_lift_that_stops),
+                                       cmocka_unit_test(test_floor_that_starts), cmocka_unit_test(test_dense_points),
+                                       cmocka_unit_test(test_closing_planes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

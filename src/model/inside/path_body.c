@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Twenty steps a period, and no more steps a frame than there may be.
+#define MOST_PERIODS 5000
+
 static ck_Status set_points(ck_Path *path, const ck_ScenePath *from, const ck_Scene *scene, const char *at,
                             ck_Error *error) {
     const size_t bytes = from->points_count * sizeof *path->points;
@@ -39,6 +42,21 @@ static ck_Status set_points(ck_Path *path, const ck_ScenePath *from, const ck_Sc
     return CK_OK;
 }
 
+// What moves in no frame, or too fast for any step, is an error: nothing is left out in silence.
+static ck_Status check_times(const ck_Model *model, const ck_Path *path, const ck_Scene *scene, const char *at,
+                             ck_Error *error) {
+    if (!(path->from < path->to))
+        return ck_scene_fail(scene, at, error, "it moves from %g s to %g s; let it end after it begins", path->from,
+                             path->to);
+    if (path->from >= model->duration)
+        return ck_scene_fail(scene, at, error, "it moves from %g s on, but the scene ends at %g s", path->from,
+                             model->duration);
+    if (path->frequency * model->step > MOST_PERIODS)
+        return ck_scene_fail(scene, at, error, "%g periods a frame are more than any step follows; at most %d",
+                             path->frequency * model->step, MOST_PERIODS);
+    return CK_OK;
+}
+
 //   at  where in the scene, as moves[0].path
 static ck_Status set_path(ck_Model *model, const ck_ScenePath *from, const ck_Scene *scene, const char *at,
                           ck_Error *error) {
@@ -54,24 +72,13 @@ static ck_Status set_path(ck_Model *model, const ck_ScenePath *from, const ck_Sc
                              "amplitude and frequency go together: it moves by amplitude*sin(2*pi*f*t)");
     if (has_points && (from->from > 0 || from->to > 0))
         return ck_scene_fail(scene, at, error, "points have times of their own; leave from and to out");
-    if (has_points) return set_points(path, from, scene, at, error);
-    if (!(path->from < path->to))
-        return ck_scene_fail(scene, at, error, "it moves from %g s to %g s; let it end after it begins", path->from,
-                             path->to);
-    if (path->from >= model->duration)
-        return ck_scene_fail(scene, at, error, "it moves from %g s on, but the scene ends at %g s", path->from,
-                             model->duration);
-    path->kind = from->velocity ? CK_PATH_VELOCITY : CK_PATH_SINE;
+    ck_Status status = has_points ? set_points(path, from, scene, at, error) : CK_OK;
     path->frequency = from->frequency;
+    if (!status) status = check_times(model, path, scene, at, error);
+    if (status || has_points) return status;
+    path->kind = from->velocity ? CK_PATH_VELOCITY : CK_PATH_SINE;
     memcpy(path->vector, from->velocity ? from->velocity : from->amplitude, sizeof path->vector);
     return CK_OK;
-}
-
-static double released_at(const ck_Model *model, int particle) {
-    for (int i = 0; i < model->release_count; i++)
-        for (int j = 0; j < model->releases[i].particle_count; j++)
-            if (model->releases[i].particles[j] == particle) return model->releases[i].frame * model->step;
-    return INFINITY;
 }
 
 static ck_Status add_driven(ck_Model *model, int particle, const char *pin, const ck_Scene *scene, const char *place,
@@ -81,9 +88,12 @@ static ck_Status add_driven(ck_Model *model, int particle, const char *pin, cons
     for (int i = 0; i < model->driven_count; i++)
         if (model->driven[i].particle == particle)
             return ck_scene_fail(scene, place, error, "%s already moves; name it once", pin);
+    const double until = ck_model_release_time(model, particle), from = model->paths[model->path_count - 1].from;
+    if (from >= until)
+        return ck_scene_fail(scene, place, error, "%s is let go at %g s, before its path begins at %g s", pin, until,
+                             from);
     ck_Driven *driven = &model->driven[model->driven_count++];
-    *driven = (ck_Driven){
-        .particle = particle, .path = &model->paths[model->path_count - 1], .until = released_at(model, particle)};
+    *driven = (ck_Driven){.particle = particle, .path = &model->paths[model->path_count - 1], .until = until};
     memcpy(driven->start, model->position + 3 * particle, sizeof driven->start);
     return CK_OK;
 }

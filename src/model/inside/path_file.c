@@ -1,5 +1,7 @@
 #include "path_file.h"
 
+#include "files.h"
+
 #include <csv.h>
 #include <errno.h>
 #include <math.h>
@@ -93,15 +95,18 @@ static void take_row(int end, void *context) {
 static void parse(Reader *reader, FILE *file) {
     struct csv_parser parser;
     char block[8192];
-    size_t length;
+    size_t length, mark;
     if (csv_init(&parser, CSV_APPEND_NULL)) {
         reader->status = ck_fail(reader->error, CK_NO_MEMORY, "%s: out of memory", reader->path);
         return;
     }
-    while (!reader->status && (length = fread(block, 1, sizeof block, file)) > 0)
-        if (csv_parse(&parser, block, length, take_field, take_row, reader) != length)
+    for (bool is_first = true; !reader->status && (length = fread(block, 1, sizeof block, file)) > 0;
+         is_first = false) {
+        mark = is_first ? ck_text_mark(block, length) : 0;
+        if (csv_parse(&parser, block + mark, length - mark, take_field, take_row, reader) != length - mark)
             reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: %s", reader->path, reader->line,
                                      csv_strerror(csv_error(&parser)));
+    }
     if (!reader->status) csv_fini(&parser, take_field, take_row, reader);
     csv_free(&parser);
 }

@@ -27,10 +27,13 @@ typedef struct Walk {
     ck_Model now;                  // without what is a bar, and with the pins there still are
     ck_Bars *bars;                 // NULL: none
     double *y, *stage, *begun, *k; // k1 … k4 are {v, a}, each [6*n]
-    bool has_failed;               // bars hold one another, or events follow one another for ever
-    bool is_wedged;                // a particle comes between two colliders
+    bool has_failed;               // bars hold one another
+    const char *refusal;           // NULL: none; what no smaller step mends
     ck_Touches *touches;           // NULL: no colliders
     double *free;                  // [3*n] accelerations without contact, of the derivative taken last
+    int substeps;                  // of a whole frame
+    int level;                     // steps at least between two jumps of what moves
+    int events;                    // of this frame
 } Walk;
 
 // Accelerations of the state there but for contact and bars, into free, with what moves pins.
@@ -75,8 +78,16 @@ static void runge_kutta(Walk *walk, double time, double dt) {
     if (walk->touches) ck_touches_project(walk->touches, time + dt, y, y + whole / 2);
 }
 
-// Steps that make no way: then events follow one another for ever.
+// Steps that make no way, and events of a frame: beyond, they follow one another for ever.
 #define MOST_STUCK 10000
+#define MOST_EVENTS 100000
+
+static const char between_two[] = "a particle comes between two colliders",
+                  without_end[] = "impacts follow one another without end";
+
+static bool is_over(const Walk *walk) {
+    return walk->has_failed || walk->refusal || ck_child_interrupted;
+}
 
 // As steps of dt, each of which ends where the first event comes. Cost: four passes over springs a step, and three more
 // an event.
@@ -85,7 +96,7 @@ static void walk_events(Walk *walk, double time, double until, double dt) {
     double *y = walk->y, *begun = walk->begun;
     int stuck = 0;
     push(walk, time, 1, y);
-    while (until - time > 1e-12 * dt && !walk->has_failed && !ck_child_interrupted) {
+    while (until - time > 1e-12 * dt && !is_over(walk)) {
         const double step = until - time < dt * (1 + 1e-9) ? until - time : dt;
         memcpy(begun, y, whole * sizeof(double));
         memcpy(begun + whole, walk->free, half * sizeof(double));
@@ -102,11 +113,11 @@ static void walk_events(Walk *walk, double time, double until, double dt) {
         memcpy(walk->free, begun + whole, half * sizeof(double));
         if (share > 0) runge_kutta(walk, time, share * step);
         time += share * step;
-        walk->is_wedged |= !ck_touches_change(walk->touches, time, y, y + half);
+        if (!ck_touches_change(walk->touches, time, y, y + half)) walk->refusal = between_two;
         push(walk, time, 1, y);
         ck_touches_settle(walk->touches, time, y, y + half, walk->free);
         stuck = share < 1e-9 ? stuck + 1 : 0;
-        walk->has_failed |= walk->is_wedged || stuck > MOST_STUCK;
+        if (stuck > MOST_STUCK || ++walk->events > MOST_EVENTS) walk->refusal = without_end;
     }
 }
 
@@ -136,32 +147,38 @@ static double next_jump(const ck_Model *model, double time) {
     return next;
 }
 
-// From one frame to the next, in pieces between which what moves pins jumps: so it keeps its order.
+// A body anew where what moves it begins, lets it go or jumps: what it touches, and how its bars jerk.
+static void begin_again(Walk *walk, double time) {
+    double *y = walk->y, *velocity = y + 3 * (size_t)walk->now.particle_count;
+    if (walk->touches) {
+        if (!ck_touches_begin(walk->touches, time, y, velocity)) walk->refusal = between_two;
+        push(walk, time, 1, y);
+        ck_touches_settle(walk->touches, time, y, velocity, walk->free);
+    }
+    if (!walk->bars || !walk->now.driven_count) return;
+    ck_driven_place(&walk->now, time, 1, y, velocity);
+    walk->has_failed |= !ck_bars_project(walk->bars, y, velocity);
+}
+
+// From one frame to the next, in pieces between which what moves jumps: so it keeps its order. Each piece is halved
+// with the frame, however short it is.
 //   begins  it is the first, or pins were let go
-static void walk_frame(Walk *walk, int frame, int substeps, bool begins) {
+static void walk_frame(Walk *walk, int frame, bool begins) {
     const ck_Model *model = &walk->now;
-    const double end = (frame + 1) * model->step;
-    for (double time = frame * model->step; time < end * (1 - 1e-15) && !walk->has_failed;) {
+    const double start = frame * model->step, end = (frame + 1) * model->step;
+    walk->events = 0;
+    for (double time = start; time < end * (1 - 1e-15) && !is_over(walk);) {
         double until = model->path_count ? fmin(end, next_jump(model, time)) : end;
         if (end - until < 1e-9 * model->step) until = end;
-        const bool is_whole = until == end && time == frame * model->step;
-        const int steps = is_whole ? substeps : (int)ceil(substeps * (until - time) / model->step);
-        const double dt = is_whole ? model->step / substeps : (until - time) / steps;
-        if (walk->touches && (begins || time > frame * model->step)) {
-            double *velocity = walk->y + 3 * (size_t)model->particle_count;
-            walk->is_wedged |= !ck_touches_begin(walk->touches, time, walk->y, velocity);
-            push(walk, time, 1, walk->y);
-            ck_touches_settle(walk->touches, time, walk->y, velocity, walk->free);
-        }
-        // where a pin's speed jumps, bars jerk
-        if (walk->bars && model->driven_count) {
-            ck_driven_place(model, time, 1, walk->y, walk->y + 3 * (size_t)model->particle_count);
-            walk->has_failed |= !ck_bars_project(walk->bars, walk->y, walk->y + 3 * (size_t)model->particle_count);
-        }
+        const bool is_whole = until == end && time == start;
+        const double share = (until - time) / model->step;
+        const int steps = is_whole ? walk->substeps : (int)fmax(walk->level, ceil(walk->substeps * share));
+        const double dt = is_whole ? model->step / steps : (until - time) / steps;
+        if (begins || time > start || ck_driven_jump(model, time)) begin_again(walk, time);
         if (walk->touches)
             walk_events(walk, time, until, dt);
         else
-            for (int i = 0; i < steps && !ck_child_interrupted && !walk->has_failed; i++) {
+            for (int i = 0; i < steps && !is_over(walk); i++) {
                 push(walk, time + i * dt, 1, walk->y);
                 runge_kutta(walk, time + i * dt, dt);
             }
@@ -177,9 +194,24 @@ static void end_walk(Walk *walk) {
     free(walk->y);
 }
 
-static ck_Status start_walk(Walk *walk, const ck_Model *model, ck_Error *error) {
+// The method is stable to 2.78/ω; it starts at a quarter of that.
+static ck_Status first_substeps(const ck_Model *model, int *substeps) {
+    double frequency;
+    // bars do not stretch; waves across them are as fast as their tension makes them
+    if (model->terms & CK_TERM_RIGID) {
+        *substeps =
+            (int)ck_stability_substeps(model, fmin(model->step / 4, 0.35 * ck_stability_transverse_time(model)));
+        return CK_OK;
+    }
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, 0.7 / fmax(frequency, 1e-300)));
+    return status;
+}
+
+static ck_Status start_walk(Walk *walk, const ck_Model *model, int substeps, ck_Error *error) {
     const size_t count = (size_t)model->particle_count, whole = 6 * count;
-    *walk = (Walk){.now = *model};
+    int first;
+    *walk = (Walk){.now = *model, .substeps = substeps};
     walk->y = malloc(9 * whole * sizeof(double));
     walk->now.pinned = malloc(count * sizeof(bool));
     walk->now.springs = malloc(((size_t)model->spring_count + 1) * sizeof(ck_Spring));
@@ -195,7 +227,9 @@ static ck_Status start_walk(Walk *walk, const ck_Model *model, ck_Error *error) 
         if (isfinite(model->springs[i].stiffness)) walk->now.springs[walk->now.spring_count++] = model->springs[i];
     memcpy(walk->y, model->position, 3 * count * sizeof(double));
     memcpy(walk->y + 3 * count, model->velocity, 3 * count * sizeof(double));
-    ck_Status status = ck_bars_create(&walk->bars, model, walk->now.pinned, error);
+    ck_Status status = first_substeps(model, &first);
+    walk->level = substeps > first ? substeps / first : 1;
+    if (!status) status = ck_bars_create(&walk->bars, model, walk->now.pinned, error);
     return status ? status : ck_touches_create(&walk->touches, model, walk->now.pinned, error);
 }
 
@@ -203,18 +237,17 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
                                  uint64_t seed, ck_Error *error) {
     Walk walk = {.y = NULL};
     ck_Status status = ck_trajectory_create(trajectory, model, error);
-    if (!status) status = start_walk(&walk, model, error);
+    if (!status) status = start_walk(&walk, model, substeps, error);
     const size_t whole = 6 * (size_t)model->particle_count;
     if (!status && nudge > 0) nudge_start(model, walk.y, nudge, seed);
     if (!status && walk.bars) walk.has_failed = !ck_bars_project(walk.bars, walk.y, walk.y + whole / 2);
     for (int frame = 0; frame <= model->frame_count && !status; frame++) {
         const bool begins = frame == 1 || (frame && lets_go(model, frame - 1));
         if (frame) let_go(&walk.now, frame - 1);
-        if (frame) walk_frame(&walk, frame - 1, substeps, begins);
+        if (frame) walk_frame(&walk, frame - 1, begins);
         status = ck_child_check(error);
-        if (walk.is_wedged && !status)
-            status = ck_fail(error, CK_REFUSED, "%s: a particle comes between two colliders by t = %.3g s", model->name,
-                             frame * model->step);
+        if (walk.refusal && !status)
+            status = ck_fail(error, CK_REFUSED, "%s: %s by t = %.3g s", model->name, walk.refusal, frame * model->step);
         bool finite = !walk.has_failed;
         for (size_t j = 0; j < whole; j++) finite &= isfinite(walk.y[j]) != 0;
         if (!finite) break;
@@ -238,7 +271,7 @@ static double distance(const ck_Model *model, const ck_Trajectory *one, const ck
 static double disagreement(const ck_ReferencePath *path, const ck_Model *model) {
     // the first frame counts even beyond the horizon: paths always agree at the start
     int last = path->horizon > 1 ? path->horizon : 1;
-    if (path->fine.frame_count <= last || path->coarse.frame_count <= last) return INFINITY;
+    if (path->fine.frame_count <= model->frame_count || path->coarse.frame_count <= last) return INFINITY;
     double largest = 0;
     for (int frame = 1; frame <= last; frame++)
         largest = fmax(largest, distance(model, &path->fine, &path->coarse, frame));
@@ -272,26 +305,20 @@ static ck_Status integrate_with_horizon(ck_ReferencePath *path, const ck_Model *
     return status;
 }
 
-// The method is stable to 2.78/ω; it starts at a quarter of that.
-static ck_Status first_substeps(const ck_Model *model, int *substeps) {
-    double frequency;
-    // bars do not stretch; waves across them are as fast as their tension makes them
-    if (model->terms & CK_TERM_RIGID) {
-        *substeps =
-            (int)ck_stability_substeps(model, fmin(model->step / 4, 0.35 * ck_stability_transverse_time(model)));
-        return CK_OK;
-    }
-    ck_Status status = ck_stability_frequency(model, &frequency);
-    *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, 0.7 / fmax(frequency, 1e-300)));
-    return status;
-}
-
 double ck_reference_work(const ck_Model *model) {
     int substeps;
     if (first_substeps(model, &substeps)) return INFINITY;
     // a bar's share of a sparse factor
     const double bar = model->terms & CK_TERM_RIGID ? 200 : 1;
     return 4.0 * substeps * model->frame_count * (bar * model->spring_count + model->particle_count);
+}
+
+// Steps of a path at twice its substeps, which are at least two between two jumps of what moves.
+static double steps_of_next(const ck_ReferencePath *path, const ck_Model *model) {
+    int jumps = 0, first;
+    for (int i = 0; i < model->path_count; i++) jumps += model->paths[i].point_count + 2;
+    if (first_substeps(model, &first)) return INFINITY;
+    return 2.0 * path->substeps * (model->frame_count + (double)jumps / first);
 }
 
 static double wanted_agreement(const ck_Model *model) {
@@ -304,7 +331,7 @@ static ck_Status refine(ck_ReferencePath *path, const ck_Model *model, ck_Error 
     ck_Status status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
     path->agreement = INFINITY;
     while (!status && path->agreement > wanted_agreement(model)) {
-        if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
+        if (steps_of_next(path, model) > MAX_STEPS)
             return ck_fail(error, CK_REFUSED, "%s: two references still differ by %.2g of the size at %d steps a frame",
                            model->name, path->agreement, path->substeps);
         ck_trajectory_free(&path->coarse);
@@ -335,7 +362,7 @@ static ck_Status check_model(const ck_Model *model, const ck_ReferencePath *path
     if ((model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model))
         return ck_fail(error, CK_REFUSED, "%s: its bars do not start at their lengths: how they snap is not known",
                        model->name);
-    if ((double)path->substeps * 2 * model->frame_count > MAX_STEPS)
+    if (steps_of_next(path, model) > MAX_STEPS)
         return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g steps", model->name, MAX_STEPS);
     return CK_OK;
 }
