@@ -129,7 +129,7 @@ void ck_answer_summary(ck_Arguments *arguments, const ck_Comparison *comparison)
     for (int i = 0; i < comparison->run_count; i++) {
         const ck_Run *run = &comparison->runs[i];
         if (run->status != CK_RUN_OK && run->status != CK_RUN_UNSUPPORTED)
-            ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %.140s", run->engine->name, ck_run_status_names[run->status],
+            ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %s", run->engine->name, ck_run_status_names[run->status],
                            run->reason);
     }
     fflush(stdout);
@@ -254,7 +254,7 @@ ck_Status ck_answer_stability(ck_Answer *answer, const char *directory, const ch
                 strcmp(ck_csv_text_of(&table, i, "case"), "critical"))
                 continue;
             if (pass && isnan(critical))
-                ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %.140s", ck_csv_text_of(&table, i, "engine"),
+                ck_answer_line(answer, CK_ANSWER_NOTE, "%s %s: %s", ck_csv_text_of(&table, i, "engine"),
                                ck_csv_text_of(&table, i, "damping"), ck_csv_text_of(&table, i, "reason"));
             if (pass) continue;
             ck_answer_text(answer, ck_csv_text_of(&table, i, "engine"));

@@ -39,13 +39,6 @@ static double sag_at(const ck_Model *model, const ck_Trajectory *trajectory, int
     return isfinite(bottom) ? (bottom - top) / model->size : NAN;
 }
 
-static double sag_peak_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
-    double deepest = NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++)
-        deepest = fmax(deepest, sag_at(model, trajectory, frame, reference));
-    return deepest;
-}
-
 static double stretch_max_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                              const ck_Reference *reference) {
     (void)reference;
@@ -56,13 +49,6 @@ static double stretch_rms_at(const ck_Model *model, const ck_Trajectory *traject
                              const ck_Reference *reference) {
     (void)reference;
     return ck_springs_rms_strain(model, ck_trajectory_position(trajectory, frame));
-}
-
-static double stretch_peak_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
-    double largest = NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++)
-        largest = fmax(largest, stretch_max_at(model, trajectory, frame, reference));
-    return largest;
 }
 
 // mean square distance of two sets of positions, m²
@@ -251,15 +237,14 @@ static const ck_Metric metrics[] = {
      .at = sag_at},
     {"stretch_max", "1", "Largest spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_max_at},
     {"stretch_rms", "1", "Root mean square spring strain at the end", CK_TRUTH_OF_STATE, .at = stretch_rms_at},
-    {"stretch_peak", "1", "Largest spring strain of the whole run", CK_TRUTH_OF_STATE, .over = stretch_peak_over},
-    {"sag_peak", "1", "Largest drop of a free particle of the whole run / size", CK_TRUTH_OF_STATE,
-     .over = sag_peak_over},
+    {"stretch_peak", "1", "Largest spring strain of the whole run", CK_TRUTH_OF_STATE, .peak = stretch_max_at},
+    {"sag_peak", "1", "Largest drop of a free particle of the whole run / size", CK_TRUTH_OF_STATE, .peak = sag_at},
     {"tension_peak", "N", "Largest pull of a spring of the whole run, by the scene's stiffness", CK_TRUTH_OF_STATE,
-     .over = ck_metric_tension_peak_over},
+     .peak = ck_metric_tension_at},
     {"pin_force", "1", "Force of springs and hinges on the pins at the end / weight", CK_TRUTH_OF_STATE,
      .at = ck_metric_pin_force_at},
     {"pin_force_peak", "1", "Largest force on the pins of the whole run / weight", CK_TRUTH_OF_STATE,
-     .over = ck_metric_pin_force_peak_over},
+     .peak = ck_metric_pin_force_at},
     {"position_rms", "1", "Root mean square distance to the truth / size", CK_TRUTH_ZERO, .at = position_rms_at,
      .over = position_rms_over, .between = position_rms_between, .to_horizon = true},
     {"energy_drift", "1", "Energy gained, or lost beyond the scene's own damping / what it turns over", CK_TRUTH_ZERO,
@@ -279,7 +264,7 @@ static const ck_Metric metrics[] = {
     {"jitter", "1", "Root mean square acceleration at the end / that of the field", CK_TRUTH_ZERO_STILL,
      .over = jitter_over},
     {"penetration_max", "1", "Deepest a particle was inside a collider / spacing", CK_TRUTH_ZERO,
-     .at = ck_metric_penetration_at, .over = ck_metric_penetration_over},
+     .at = ck_metric_penetration_at, .peak = ck_metric_penetration_at},
     {"penetration_time", "s", "Time for which a particle is deeper in a collider than a hundredth of the spacing",
      CK_TRUTH_ZERO, .over = ck_metric_penetration_time_over},
     {"contact_share", "1", "Share of free particles on a collider at the end, to a hundredth of the spacing",
@@ -326,7 +311,11 @@ double ck_metric_value(const ck_Metric *metric, const ck_Model *model, const ck_
                        const ck_Reference *reference) {
     if (metric->truth == CK_TRUTH_OF_SERIES) return NAN;
     if (metric->over) return metric->over(model, trajectory, reference);
-    return metric->at(model, trajectory, last_frame(trajectory), reference);
+    if (!metric->peak) return metric->at(model, trajectory, last_frame(trajectory), reference);
+    double largest = NAN;
+    for (int frame = 0; frame < trajectory->frame_count; frame++)
+        largest = fmax(largest, metric->peak(model, trajectory, frame, reference));
+    return largest;
 }
 
 double ck_metric_truth(const ck_Metric *metric, const ck_Model *model, const ck_Reference *reference) {

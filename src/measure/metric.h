@@ -31,7 +31,9 @@ typedef struct ck_Metric {
 
     // Of one frame; NULL where it only makes sense for a whole run. NaN: does not apply here.
     double (*at)(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const ck_Reference *reference);
-    // Of a whole run. NULL: that of its last frame.
+    // Of a whole run, which is the largest of its frames. NULL: it is another.
+    double (*peak)(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const ck_Reference *reference);
+    // Of a whole run. NULL: the largest of its frames, or else that of its last.
     double (*over)(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference);
     // How far two engines are apart. NULL: the difference of their values.
     double (*between)(const ck_Model *model, const ck_Trajectory *one, const ck_Trajectory *other);

@@ -126,7 +126,7 @@ static const struct {
     {"let go inside a plane",
      ROPE TIME "pins: [2]\nrelease: [{at: 0.5, pins: [2]}]\ncolliders: [{plane: {point: [0, -0.15, 0], normal: [0, 1, "
                "0]}}]\n",
-     ":7:13:", "particle 2 starts 0.05 m inside"},
+     ":7:13:", "particle 2 is 0.05 m inside this collider when it is let go, at 0.5 s"},
     {"bar to itself", NETWORK("[[0, 0]]"), ":4:10:", "bar from node 0 to itself"},
     {"bar to a missing node", NETWORK("[[0, 1], [0, 7]]"),
      ":4:18:", "node 7, which does not exist; the nodes are 0 to 2"},

@@ -50,7 +50,7 @@ static void show_statuses(Diff *diff) {
         diff->only_new += before < 0;
         if (before < 0 || !strcmp(was, is)) continue;
         diff->changed++;
-        ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%s %s: %s, was %s: %.140s", ck_csv_text_of(new, i, "scene"),
+        ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%s %s: %s, was %s: %s", ck_csv_text_of(new, i, "scene"),
                        ck_csv_text_of(new, i, "engine"), is, was, ck_csv_text_of(new, i, "reason"));
     }
     for (int i = 0; i < old->row_count; i++) diff->only_old += find_row(new, old, i, run_key) < 0;

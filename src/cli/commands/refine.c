@@ -36,7 +36,7 @@ static void say_engine(ck_Answer *answer, const ck_CsvTable *table, int first, c
         limit = ck_csv_number_of(table, i, "limit");
     }
     if (!known)
-        ck_answer_line(answer, CK_ANSWER_NOTE, "%s: %.120s", engine, ck_csv_text_of(table, first, "reason"));
+        ck_answer_line(answer, CK_ANSWER_NOTE, "%s: %s", engine, ck_csv_text_of(table, first, "reason"));
     else if (isnan(limit))
         ck_answer_line(answer, CK_ANSWER_SAYS, "%s, %s: %d of %d metrics converge%s%s", scene, engine, converging,
                        known, not ? "; not " : "", not ? not : "");

@@ -68,14 +68,6 @@ double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *traj
     return isnan(height) ? NAN : fmax(0, -height);
 }
 
-double ck_metric_penetration_over(const ck_Model *model, const ck_Trajectory *trajectory,
-                                  const ck_Reference *reference) {
-    double deepest = NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++)
-        deepest = fmax(deepest, ck_metric_penetration_at(model, trajectory, frame, reference));
-    return deepest;
-}
-
 static const ck_Collider *first_plane(const ck_Model *model) {
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].shape == CK_PLANE && !model->pin_count) return &model->colliders[i];

@@ -7,8 +7,6 @@
 // How deep the deepest particle is inside a collider / spacing.
 double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                                 const ck_Reference *reference);
-double ck_metric_penetration_over(const ck_Model *model, const ck_Trajectory *trajectory,
-                                  const ck_Reference *reference);
 
 // For how long a particle is deeper than a hundredth of the spacing, s, by the frames at which one is.
 double ck_metric_penetration_time_over(const ck_Model *model, const ck_Trajectory *trajectory,

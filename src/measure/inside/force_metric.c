@@ -7,17 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-double ck_metric_tension_peak_over(const ck_Model *model, const ck_Trajectory *trajectory,
-                                   const ck_Reference *reference) {
+double ck_metric_tension_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                            const ck_Reference *reference) {
     (void)reference;
     double largest = NAN;
     if (model->terms & CK_TERM_RIGID) return NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++)
-        for (int i = 0; i < model->spring_count; i++) {
-            const ck_Spring *spring = &model->springs[i];
-            const double strain = ck_spring_strain(spring, ck_trajectory_position(trajectory, frame));
-            largest = fmax(largest, fmax(0, spring->stiffness * spring->rest * strain));
-        }
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        const double strain = ck_spring_strain(spring, ck_trajectory_position(trajectory, frame));
+        largest = fmax(largest, fmax(0, spring->stiffness * spring->rest * strain));
+    }
     return largest;
 }
 
@@ -63,12 +62,4 @@ double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajec
         if (b && !a) add_pull(spring, position, velocity, -1, force);
     }
     return holds && add_hinges(model, position, force) ? ck_length(force) / weight : NAN;
-}
-
-double ck_metric_pin_force_peak_over(const ck_Model *model, const ck_Trajectory *trajectory,
-                                     const ck_Reference *reference) {
-    double largest = NAN;
-    for (int frame = 0; frame < trajectory->frame_count; frame++)
-        largest = fmax(largest, ck_metric_pin_force_at(model, trajectory, frame, reference));
-    return largest;
 }

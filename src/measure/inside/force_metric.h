@@ -5,16 +5,13 @@
 
 #include "metric.h"
 
-// The largest pull of a spring over all frames, N.
-double ck_metric_tension_peak_over(const ck_Model *model, const ck_Trajectory *trajectory,
-                                   const ck_Reference *reference);
+// The largest pull of a spring, N.
+double ck_metric_tension_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                            const ck_Reference *reference);
 
 // The force on all pins at a frame, by the springs and hinges that end there, / weight of what is free at the start.
 // At rest it is 1, unless a solver's springs are not the scene's. NaN without pins or field.
 double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                               const ck_Reference *reference);
-// The largest of all frames.
-double ck_metric_pin_force_peak_over(const ck_Model *model, const ck_Trajectory *trajectory,
-                                     const ck_Reference *reference);
 
 #endif
