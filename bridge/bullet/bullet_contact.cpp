@@ -5,23 +5,56 @@
 double ck_bullet_margin(const ck_Model *model) {
     double margin = 0.1 * model->spacing;
     for (int i = 0; i < model->collider_count; i++)
-        if (model->colliders[i].shape == CK_SPHERE) margin = btMin(margin, 0.1 * model->colliders[i].radius);
+        margin = btMin(margin, 0.1 * ck_collider_breadth(&model->colliders[i]));
     return margin;
 }
 
-// Half the side of the box that stands for a plane, in units of the model, of which the body is one or two long: it is
-// there wherever the body is. Bullet's distance test fails in boxes of some thousands.
+// Half the side of the box that stands for a plane, and half the length of a cylinder, in units of the model, of which
+// the body is one or two long: it is there wherever the body is. Bullet's distance test fails in boxes of some
+// thousands.
 const double half_side = 16;
 // How far the body may get from the middle of the box before it is moved.
 const double half_side_left = 4;
 
-static btTransform place_plane(const ck_Collider &collider, const btVector3 &middle, double margin) {
-    btVector3 normal(collider.normal[0], collider.normal[1], collider.normal[2]);
-    btVector3 point(collider.point[0], collider.point[1], collider.point[2]);
-    btTransform place(shortestArcQuat(btVector3(0, 1, 0), normal));
-    btVector3 above = middle - point;
-    place.setOrigin(point + (above - normal * above.dot(normal)) - normal * (half_side + margin));
-    return place;
+static btVector3 vector_of(const double *from) {
+    return btVector3(from[0], from[1], from[2]);
+}
+
+btTransform ck_bullet_place(const ck_Collider &collider, const btVector3 &middle, double margin, double side) {
+    const btVector3 point = vector_of(collider.point), above = middle - point;
+    const btVector3 x = vector_of(collider.axes[0]), y = vector_of(collider.axes[1]), z = vector_of(collider.axes[2]);
+    if (collider.shape == CK_PLANE) {
+        const btVector3 normal = vector_of(collider.normal);
+        return btTransform(shortestArcQuat(btVector3(0, 1, 0), normal),
+                           point + (above - normal * above.dot(normal)) - normal * (side + margin));
+    }
+    // a capsule of Bullet's stands along y
+    if (collider.shape == CK_CAPSULE) return btTransform(shortestArcQuat(btVector3(0, 1, 0), x), point);
+    if (collider.shape == CK_CYLINDER)
+        return btTransform(shortestArcQuat(btVector3(0, 1, 0), x), point + x * above.dot(x));
+    if (collider.shape == CK_SPHERE) return btTransform(btQuaternion::getIdentity(), point);
+    return btTransform(btMatrix3x3(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]), point);
+}
+
+std::unique_ptr<btCollisionShape> ck_bullet_shape(const ck_Collider &collider, double margin, double side) {
+    const double radius = collider.radius - margin;
+    switch (collider.shape) {
+    case CK_SPHERE: return std::make_unique<btSphereShape>(radius);
+    case CK_CAPSULE: return std::make_unique<btCapsuleShape>(radius, 2 * collider.half[0]);
+    case CK_CYLINDER: return std::make_unique<btCapsuleShape>(radius, 2 * side);
+    case CK_BOX: {
+        auto box = std::make_unique<btBoxShape>(vector_of(collider.half) + btVector3(radius, radius, radius));
+        // its margin rounds a box's edges in Bullet; none at all is too little for its distances
+        box->setMargin(btMax(radius, 1e-3 * ck_collider_breadth(&collider)));
+        return box;
+    }
+    default: return std::make_unique<btBoxShape>(btVector3(side, side, side));
+    }
+}
+
+// Those without end stay where the body is.
+static bool is_endless(const ck_Collider &collider) {
+    return collider.shape == CK_PLANE || collider.shape == CK_CYLINDER;
 }
 
 static btVector3 middle_of(const ck_BulletBody &body) {
@@ -42,16 +75,10 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
         const ck_Collider &collider = model->colliders[i];
         start_of.push_back(collider);
         end_of.push_back(collider);
-        btTransform place(btQuaternion::getIdentity(),
-                          btVector3(collider.point[0], collider.point[1], collider.point[2]));
-        if (collider.shape == CK_PLANE) {
-            shapes.push_back(std::make_unique<btBoxShape>(btVector3(half_side, half_side, half_side)));
-            place = place_plane(collider, middle_of(body), margin);
-        } else {
-            shapes.push_back(std::make_unique<btSphereShape>(collider.radius - margin));
-            // a grid this fine is off by some 1e-4 of the radius; of a box any is exact
-            voxel = btMin(voxel, collider.radius / 60);
-        }
+        shapes.push_back(ck_bullet_shape(collider, margin, half_side));
+        const btTransform place = ck_bullet_place(collider, middle_of(body), margin, half_side);
+        // a grid this fine is off by some 1e-4 of the radius; of a plane any is exact
+        if (collider.shape != CK_PLANE) voxel = btMin(voxel, ck_collider_breadth(&collider) / 60);
         btRigidBody::btRigidBodyConstructionInfo construction(0, nullptr, shapes.back().get());
         construction.m_startWorldTransform = place;
         // without any friction at all Bullet's projection divides by it
@@ -66,14 +93,14 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
 
 void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body) {
     const btVector3 middle = middle_of(body);
-    for (auto &plane : bodies) {
-        const ck_Collider &collider = at_start(plane.get());
-        if (collider.shape != CK_PLANE || collider.path) continue;
-        btTransform place = place_plane(collider, middle, ck_bullet_margin(body.model));
-        if (!((place.getOrigin() - plane->getWorldTransform().getOrigin()).length() > half_side_left)) continue;
-        plane->setWorldTransform(place);
-        plane->setInterpolationWorldTransform(place);
-        world.updateSingleAabb(plane.get());
+    for (auto &object : bodies) {
+        const ck_Collider &collider = at_start(object.get());
+        if (!is_endless(collider) || collider.path) continue;
+        btTransform place = ck_bullet_place(collider, middle, ck_bullet_margin(body.model), half_side);
+        if (!((place.getOrigin() - object->getWorldTransform().getOrigin()).length() > half_side_left)) continue;
+        object->setWorldTransform(place);
+        object->setInterpolationWorldTransform(place);
+        world.updateSingleAabb(object.get());
     }
 }
 
@@ -86,9 +113,8 @@ void ck_BulletColliders::move(btDiscreteDynamicsWorld &world, const ck_BulletBod
         start_of[index] = ck_collider_at(&collider, start, 1, velocity, acceleration);
         end_of[index] = ck_collider_at(&collider, start + body.dt, -1, velocity, acceleration);
         const double *from = start_of[index].point, *to = end_of[index].point;
-        btTransform place(btQuaternion::getIdentity(), btVector3(to[0], to[1], to[2]));
-        if (collider.shape == CK_PLANE)
-            place = place_plane(end_of[index], middle_of(body), ck_bullet_margin(body.model));
+        const btTransform place =
+            ck_bullet_place(end_of[index], middle_of(body), ck_bullet_margin(body.model), half_side);
         object->setWorldTransform(place);
         object->setInterpolationWorldTransform(place);
         object->setLinearVelocity(btVector3(to[0] - from[0], to[1] - from[1], to[2] - from[2]) / body.dt);

@@ -9,10 +9,10 @@
 class ck_BulletColliders {
   public:
     // Adds a body for each collider to a world and sets the soft body's margin and the grid of its distances. A plane
-    // is a box (Bullet's static plane lets soft bodies through), a ball shrinks and a plane sinks by the margin, at
+    // is a box (Bullet's static plane lets soft bodies through), solids shrink and a plane sinks by the margin, at
     // which Bullet lets nodes rest.
     void add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info);
-    // Before a frame: the boxes that stand for planes go where the body is, along their planes.
+    // Before a frame: what stands for planes and cylinders goes where the body is, along them.
     void follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body);
     // Before a step that starts at a time, s: colliders that move go where they are at its end, with the speed that
     // takes them there.
@@ -39,6 +39,13 @@ class ck_BulletColliders {
 
 // How thick a soft body is to Bullet, m: a tenth of what it is made of and of what it touches.
 double ck_bullet_margin(const ck_Model *model);
+
+// Bullet's shape of a collider, less a margin: a plane is a box, and a cylinder without end a capsule, that the body
+// does not get off, half_side m to each side.
+std::unique_ptr<btCollisionShape> ck_bullet_shape(const ck_Collider &collider, double margin, double half_side);
+
+// Where such a shape is: planes and cylinders beside the middle of the body.
+btTransform ck_bullet_place(const ck_Collider &collider, const btVector3 &middle, double margin, double half_side);
 
 // ck_collider_gap of a point of Bullet's.
 double ck_bullet_gap(const ck_Collider &collider, const btVector3 &point, double normal[3]);

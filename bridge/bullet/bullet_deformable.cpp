@@ -326,8 +326,8 @@ ck_Status code_explicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Set
 }
 
 const unsigned terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-                       CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING |
-                       CK_TERM_WIND | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
+                       CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |
+                       CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
 
 const ck_Setting implicit_settings[] = {
     {.name = "substeps",

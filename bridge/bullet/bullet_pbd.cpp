@@ -455,8 +455,8 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .version = ck_bullet_version,
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
-             CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |
-             CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
+             CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |
+             CK_TERM_MOVING_COLLIDERS,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,

@@ -1,5 +1,6 @@
 // Bullet's classic soft body as its demos and documentation use it: nothing is corrected. Beside bullet-pbd it shows
 // what the corrections buy, and what games that ship it get.
+#include "bullet_contact.hpp"
 #include "bullet_drive.hpp"
 #include "bullet_guard.hpp"
 #include "collider.h"
@@ -127,20 +128,15 @@ void add_soft_body(Stock &stock) {
 }
 
 btTransform place_of(const ck_Collider &collider) {
-    const btVector3 point(collider.point[0], collider.point[1], collider.point[2]),
-        normal(collider.normal[0], collider.normal[1], collider.normal[2]);
-    if (collider.shape == CK_SPHERE) return btTransform(btQuaternion::getIdentity(), point);
-    return btTransform(shortestArcQuat(btVector3(0, 1, 0), normal), point - normal * half_side);
+    const btVector3 point(collider.point[0], collider.point[1], collider.point[2]);
+    return ck_bullet_place(collider, point, 0, half_side);
 }
 
 void add_colliders(Stock &stock) {
     const ck_Model *model = &stock.model;
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider &collider = model->colliders[i];
-        if (collider.shape == CK_PLANE)
-            stock.shapes.push_back(std::make_unique<btBoxShape>(btVector3(half_side, half_side, half_side)));
-        else
-            stock.shapes.push_back(std::make_unique<btSphereShape>(collider.radius));
+        stock.shapes.push_back(ck_bullet_shape(collider, 0, half_side));
         btRigidBody::btRigidBodyConstructionInfo construction(0, nullptr, stock.shapes.back().get());
         construction.m_startWorldTransform = place_of(collider);
         construction.m_friction = collider.friction;
@@ -298,7 +294,7 @@ extern "C" const ck_Engine ck_bullet_stock = {
     .version = ck_bullet_version,
     .method = CK_METHOD_UNKNOWN,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
+             CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .is_stock = true,

@@ -5,6 +5,7 @@ import { createInterface } from 'node:readline';
 import initialise from 'jolt-physics/wasm-compat';
 
 const LAYERS = 2; // of objects: 0 does not move, 1 does
+const ENDLESS = 100; // half the length of a cylinder without end, in sizes of the body
 const LEAST_SUBSTEPS = 5; // Jolt's own, mNumIterations
 const MOST_SUBSTEPS = 50; // of those that it chooses itself
 // A substep moves a point by g·h² of gravity: where that is fewer than so many spacings of floats at its place, what
@@ -50,19 +51,63 @@ function makeShape(particles, springs) {
   return shape;
 }
 
+// The rotation whose columns are three axes.
+function turnOf([x, y, z]) {
+  const w = Math.sqrt(Math.max(0, 1 + x[0] + y[1] + z[2])) / 2;
+  if (w > 0.1) return new jolt.Quat((y[2] - z[1]) / (4 * w), (z[0] - x[2]) / (4 * w), (x[1] - y[0]) / (4 * w), w);
+  // by its largest part where w is small
+  const parts = [x[0] - y[1] - z[2], y[1] - z[2] - x[0], z[2] - x[0] - y[1]];
+  const most = parts.indexOf(Math.max(...parts));
+  const [i, j, k] = [most, (most + 1) % 3, (most + 2) % 3];
+  const columns = [x, y, z];
+  const part = Math.sqrt(1 + parts[i]) / 2;
+  const turn = [0, 0, 0, (columns[j][k] - columns[k][j]) / (4 * part)];
+  turn[i] = part;
+  turn[j] = (columns[i][j] + columns[j][i]) / (4 * part);
+  turn[k] = (columns[i][k] + columns[k][i]) / (4 * part);
+  return new jolt.Quat(...turn);
+}
+
+// A capsule stands along its second axis.
+const capsule = (length, radius, along, across, third) =>
+  [new jolt.CapsuleShape(length, radius), turnOf([across, along, third.map((part) => -part)])];
+
+// To soft bodies Jolt's boxes have sharp edges: a rounded one is three, each out to two faces, and a capsule an edge.
+function* boxPieces({ point, radius, axes, half }) {
+  for (let k = 0; k < 3; k++) {
+    const [l, m] = [(k + 1) % 3, (k + 2) % 3];
+    const sides = half.map((side, axis) => (axis === k ? side + radius : side));
+    yield [point, new jolt.BoxShape(new jolt.Vec3(...sides), 0), turnOf(axes)];
+    if (radius === 0) return;
+    for (const [one, other] of [[-1, -1], [-1, 1], [1, -1], [1, 1]]) {
+      const at = point.map((x, i) => x + one * half[l] * axes[l][i] + other * half[m] * axes[m][i]);
+      yield [at, ...capsule(half[k], radius, axes[k], axes[l], axes[m])];
+    }
+  }
+}
+
+// Jolt's shapes of a collider, where they are, and how they are turned. A cylinder without end is a capsule far longer
+// than the body.
+function* piecesOf(collider, size) {
+  const { shape, point, normal, radius, axes, half } = collider;
+  const straight = jolt.Quat.prototype.sIdentity();
+  if (shape === 'sphere') yield [point, new jolt.SphereShape(radius), straight];
+  else if (shape === 'plane')
+    yield [point, new jolt.PlaneShape(new jolt.Plane(new jolt.Vec3(...normal), 0), undefined, 1e4), straight];
+  else if (shape === 'box') yield* boxPieces(collider);
+  else yield [point, ...capsule(Math.min(half[0], ENDLESS * size), radius, ...axes)];
+}
+
 // A collider's friction and restitution alone count: Jolt takes the root of the product of both bodies' friction, and
 // the larger restitution.
-function addCollider(bodies, { shape, point, normal, radius, restitution, friction }) {
-  const at = new jolt.RVec3(...point);
-  const solid =
-    shape === 'sphere'
-      ? new jolt.SphereShape(radius)
-      : new jolt.PlaneShape(new jolt.Plane(new jolt.Vec3(...normal), 0), undefined, 1e4);
-  const settings = new jolt.BodyCreationSettings(
-    solid, at, jolt.Quat.prototype.sIdentity(), jolt.EMotionType_Static, 0);
-  settings.mFriction = friction * friction;
-  settings.mRestitution = restitution;
-  bodies.AddBody(bodies.CreateBody(settings).GetID(), jolt.EActivation_DontActivate);
+function addCollider(bodies, collider, size) {
+  for (const [point, solid, turn] of piecesOf(collider, size)) {
+    const at = new jolt.RVec3(...point);
+    const settings = new jolt.BodyCreationSettings(solid, at, turn, jolt.EMotionType_Static, 0);
+    settings.mFriction = collider.friction * collider.friction;
+    settings.mRestitution = collider.restitution;
+    bodies.AddBody(bodies.CreateBody(settings).GetID(), jolt.EActivation_DontActivate);
+  }
 }
 
 // As gravity moves points along its own axes, the spacing there counts.
@@ -92,7 +137,7 @@ function build(scene) {
   const bodies = made.jolt.GetPhysicsSystem().GetBodyInterface();
   made.body = bodies.CreateSoftBody(settings);
   bodies.AddBody(made.body.GetID(), jolt.EActivation_Activate);
-  scene.colliders.forEach((collider) => addCollider(bodies, collider));
+  scene.colliders.forEach((collider) => addCollider(bodies, collider, scene.size));
   made.motion = jolt.castObject(made.body.GetMotionProperties(), jolt.SoftBodyMotionProperties);
   // Jolt shares a body's force out among its vertices
   made.push = new jolt.Vec3(...scene.force.map((f) => f * scene.particles.length));
@@ -161,10 +206,14 @@ function release(particle) {
 
 function readCollider(words) {
   const [shape, ...rest] = words;
-  const numbers = rest.map(Number);
-  const isBall = shape === 'sphere';
-  const [restitution, friction] = numbers.slice(isBall ? 4 : 6);
-  return { shape, point: numbers.slice(0, 3), radius: numbers[3], normal: numbers.slice(3, 6), restitution, friction };
+  const numbers = rest.map((word) => (word === 'inf' ? Infinity : Number(word)));
+  const take = (count) => numbers.splice(0, count);
+  const collider = { shape, point: take(3) };
+  if (shape === 'plane') collider.normal = take(3);
+  if (!['plane', 'sphere'].includes(shape)) Object.assign(collider, { axes: [take(3), take(3), take(3)], half: take(3) });
+  if (shape !== 'plane') [collider.radius] = take(1);
+  [collider.restitution, collider.friction] = numbers;
+  return collider;
 }
 
 const springOf = (words) => words.map((word, i) => (i === 5 ? word : word === 'inf' ? Infinity : Number(word)));
@@ -195,7 +244,7 @@ const { version } = JSON.parse(readFileSync(new URL('./node_modules/jolt-physics
 
 const hello = () => `version jolt-physics ${version} float
 about Jolt's soft body: XPBD, one sweep over compliant edges in each of its iterations, which are substeps
-models springs rigid damping gravity force drag velocity plane sphere release
+models springs rigid damping gravity force drag velocity plane sphere release solids
 precision single
 positions raw
 setting substeps 1 100000 whole mNumIterations: substeps of an update (default: 50, fewer where floats end)

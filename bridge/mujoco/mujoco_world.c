@@ -349,7 +349,7 @@ const ck_Engine ck_mujoco = {
     .version = version,
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |
+             CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |
              CK_TERM_MOVING_COLLIDERS,
     .settings = settings,
     .order = 1,

@@ -1,6 +1,8 @@
 #include "mujoco_xml.h"
 
+#include "collider.h"
 #include "path.h"
+#include "vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,9 +12,12 @@
 double ck_mujoco_radius(const ck_Model *model) {
     double radius = 0.1 * model->spacing;
     for (int i = 0; i < model->collider_count; i++)
-        if (model->colliders[i].shape == CK_SPHERE) radius = fmin(radius, 0.1 * model->colliders[i].radius);
+        radius = fmin(radius, 0.1 * ck_collider_breadth(&model->colliders[i]));
     return radius;
 }
+
+// Half the length of a cylinder without end, in sizes of the body.
+#define ENDLESS 100.0
 
 // Steps that a contact without restitution takes to come to rest.
 #define REST_STEPS 2.0
@@ -48,12 +53,7 @@ static void write_contact(FILE *out, const ck_Collider *collider, double step) {
             collider->friction);
 }
 
-// The rotation that turns the z axis, which is a plane's normal, into a direction.
-static void write_turn(FILE *out, const double *normal) {
-    fprintf(out, " zaxis=\"%.17g %.17g %.17g\"", normal[0], normal[1], normal[2]);
-}
-
-// A ball that moves is a body, which is put where it belongs before every step, and too heavy to be pushed.
+// A solid that moves is a body, which is put where it belongs before every step, and too heavy to be pushed.
 static void write_moving(FILE *out, const ck_Model *model, int index) {
     double mass = CK_MUJOCO_HEAVY * model->particle_count;
     fprintf(out, "<body name=\"c%d\"><inertial pos=\"0 0 0\" mass=\"%.17g\" diaginertia=\"%.17g %.17g %.17g\"/>", index,
@@ -62,22 +62,62 @@ static void write_moving(FILE *out, const ck_Model *model, int index) {
         fprintf(out, "<joint type=\"slide\" axis=\"%d %d %d\"/>", axis == 0, axis == 1, axis == 2);
 }
 
-// A plane sinks and a ball shrinks by the radius of what stands for a particle.
+// One of MuJoCo's own shapes at a place, m, with its sizes, m, and the axes of the collider.
+static void write_geom(FILE *out, const ck_Collider *collider, const ck_MujocoOptions *options, const char *type,
+                       const double *at, const double *sizes, const double *zaxis) {
+    const double(*axes)[3] = collider->axes;
+    fprintf(out,
+            "<geom contype=\"0\" conaffinity=\"1\" type=\"%s\" pos=\"%.17g %.17g %.17g\" size=\"%.17g %.17g %.17g\"",
+            type, at[0], at[1], at[2], sizes[0], sizes[1], sizes[2]);
+    if (zaxis)
+        fprintf(out, " zaxis=\"%.17g %.17g %.17g\"", zaxis[0], zaxis[1], zaxis[2]);
+    else if (collider->shape == CK_BOX)
+        fprintf(out, " xyaxes=\"%.17g %.17g %.17g %.17g %.17g %.17g\"", axes[0][0], axes[0][1], axes[0][2], axes[1][0],
+                axes[1][1], axes[1][2]);
+    write_contact(out, collider, options->step);
+    fprintf(out, "/>");
+}
+
+// A box with rounded edges: three, each out to two faces, and a capsule along each edge.
+static void write_box(FILE *out, const ck_Collider *collider, const ck_MujocoOptions *options, double radius) {
+    for (int k = 0; k < 3; k++) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        double sizes[3] = {collider->half[0], collider->half[1], collider->half[2]};
+        sizes[k] += radius;
+        write_geom(out, collider, options, "box", collider->point, sizes, NULL);
+        for (int corner = 0; corner < 4; corner++) {
+            const double edge[3] = {radius, collider->half[k], 0};
+            double at[3];
+            memcpy(at, collider->point, sizeof at);
+            ck_add_scaled(at, (corner & 1 ? 1 : -1) * collider->half[l], collider->axes[l]);
+            ck_add_scaled(at, (corner & 2 ? 1 : -1) * collider->half[m], collider->axes[m]);
+            write_geom(out, collider, options, "capsule", at, edge, collider->axes[k]);
+        }
+    }
+}
+
+// A plane sinks and a solid shrinks by the radius of what stands for a particle, which rounds sharp edges. A cylinder
+// without end is a capsule far longer than the body.
 static void write_collider(FILE *out, const ck_Model *model, int index, const ck_MujocoOptions *options) {
     const ck_Collider *collider = &model->colliders[index];
-    const double *at = collider->point, *normal = collider->normal;
+    const double radius = collider->radius - options->radius, length = fmin(collider->half[0], ENDLESS * model->size);
+    const double plane[3] = {0, 0, 1}, ball[3] = {radius, 0, 0}, capsule[3] = {radius, length, 0},
+                 box[3] = {collider->half[0] + radius, collider->half[1] + radius, collider->half[2] + radius};
+    double sunk[3] = {collider->point[0], collider->point[1], collider->point[2]};
     if (collider->path) write_moving(out, model, index);
-    fprintf(out, "<geom contype=\"0\" conaffinity=\"1\"");
-    if (collider->shape == CK_SPHERE) {
-        fprintf(out, " type=\"sphere\" size=\"%.17g\" pos=\"%.17g %.17g %.17g\"", collider->radius - options->radius,
-                at[0], at[1], at[2]);
+    if (collider->shape == CK_PLANE) {
+        ck_add_scaled(sunk, -options->radius, collider->normal);
+        write_geom(out, collider, options, "plane", sunk, plane, collider->normal);
+    } else if (collider->shape == CK_SPHERE) {
+        write_geom(out, collider, options, "sphere", collider->point, ball, NULL);
+    } else if (collider->shape != CK_BOX) {
+        write_geom(out, collider, options, "capsule", collider->point, capsule, collider->axes[0]);
+    } else if (radius > 0) {
+        write_box(out, collider, options, radius);
     } else {
-        fprintf(out, " type=\"plane\" size=\"0 0 1\" pos=\"%.17g %.17g %.17g\"", at[0] - options->radius * normal[0],
-                at[1] - options->radius * normal[1], at[2] - options->radius * normal[2]);
-        write_turn(out, normal);
+        write_geom(out, collider, options, "box", collider->point, box, NULL);
     }
-    write_contact(out, collider, options->step);
-    fprintf(out, collider->path ? "/></body>\n" : "/>\n");
+    fprintf(out, collider->path ? "</body>\n" : "\n");
 }
 
 static void write_particle(FILE *out, const ck_Model *model, int particle, const ck_MujocoOptions *options) {

@@ -93,7 +93,7 @@ static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, 
     if (rebounds && gap >= 0) return;
     // in small steps, what comes near within two: springs may push it in faster than it falls. A long step past a ball
     // is another matter: only where it hits, and there
-    bool is_small = collider->shape == CK_PLANE || ck_length(velocity) * h < SMALL_STEP * collider->radius;
+    bool is_small = ck_length(velocity) * h < SMALL_STEP * ck_collider_breadth(collider);
     if (gap > fmax(rest * h, is_small ? -2 * speed * h : 0)) {
         double hit = ck_collider_hit(collider, position, velocity, field, h, 0), met[3];
         if (is_small || !(hit <= h)) return;

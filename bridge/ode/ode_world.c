@@ -360,8 +360,8 @@ static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const c
 
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
-     CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |            \
-     CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
+     CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |         \
+     CK_TERM_MOVING_COLLIDERS)
 
 static const ck_Setting quick_settings[] = {
     {.name = "substeps",

@@ -24,24 +24,27 @@ function positionsOf(codes, least, largest) {
 	return positions;
 }
 
+// Of each: its middle, its radius, and of all but a sphere three axes and half the core along them.
+const solidKinds = ["sphere", "capsule", "cylinder", "box"];
+
 function parseHeader(text) {
-	const header = { paths: [], planes: [], spheres: [] };
+	const header = { paths: [], planes: [], solids: [] };
 	let last = [];
 	for (const line of text.split("\n")) {
 		const [key, ...words] = line.split(" ");
 		if (key === "path") header.paths.push(words[0]);
 		else if (key === "plane") header.planes.push(last = words.map(Number));
-		else if (key === "sphere") header.spheres.push(last = words.map(Number));
+		else if (solidKinds.includes(key)) header.solids.push(last = Object.assign(words.map(Number), { shape: key }));
 		else if (key === "moves") last.moves = words.map(Number);
 		else if (["columns", "particles", "springs", "triangles", "frames"].includes(key)) header[key] = Number(words[0]);
 	}
 	return header;
 }
 
-// {columns, particles, planes, spheres, times, springs, rests, triangles, paths: Map of name to positions}
+// {columns, particles, planes, solids, times, springs, rests, triangles, paths: Map of name to positions}
 function parseReplay(buffer) {
 	const bytes = new Uint8Array(buffer);
-	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 8192));
+	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 20));
 	const headerSize = start.indexOf("\ndata\n") + "\ndata\n".length;
 	const replay = parseHeader(start.slice(0, headerSize));
 	const names = replay.paths;

@@ -97,6 +97,22 @@ function showBody(replay, body, path, time) {
 	return body.group.visible;
 }
 
+// Along the first axis; what is round is made to stand along the second.
+function solidGeometry(collider) {
+	const radius = 0.99 * collider[3], [along, second, third] = collider.slice(13);
+	if (collider.shape === "sphere") return new THREE.SphereGeometry(radius, 24, 16);
+	if (collider.shape === "box")
+		return new THREE.BoxGeometry(...[along, second, third].map((half) => 2 * (half + radius)), 4, 4, 4);
+	if (collider.shape === "cylinder")
+		return new THREE.CylinderGeometry(radius, radius, 2 * along, 24, 8, true).rotateZ(Math.PI / 2);
+	const outline = [];
+	for (let angle = -6; angle <= 6; angle++) {
+		const turn = angle / 6 * Math.PI / 2;
+		outline.push(new THREE.Vector2(radius * Math.cos(turn), radius * Math.sin(turn) + Math.sign(angle) * along));
+	}
+	return new THREE.LatheGeometry(outline, 24).rotateZ(Math.PI / 2);
+}
+
 function makeColliders(replay) {
 	const group = new THREE.Group();
 	const size = boundsOf(replay, [...replay.paths.keys()].slice(-1)).getSize(new THREE.Vector3()).length();
@@ -105,11 +121,14 @@ function makeColliders(replay) {
 		object.userData = { at: collider.slice(0, 3), moves: collider.moves };
 		group.add(object);
 	};
-	for (const collider of replay.spheres) {
-		const radius = collider[3];
-		const ball = new THREE.Mesh(new THREE.SphereGeometry(0.99 * radius, 24, 16),
+	for (const collider of replay.solids) {
+		const solid = new THREE.Mesh(solidGeometry(collider),
 			new THREE.MeshBasicMaterial({ color: 0x9aa7b5, wireframe: true, transparent: true, opacity: 0.5 }));
-		place(ball, collider);
+		if (collider.shape !== "sphere") {
+			const axes = [4, 7, 10].map((at) => new THREE.Vector3(...collider.slice(at, at + 3)));
+			solid.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(...axes));
+		}
+		place(solid, collider);
 	}
 	for (const collider of replay.planes) {
 		const grid = new THREE.GridHelper(2 * size, 20, 0xb0b8c0, 0xd5dae0);

@@ -13,7 +13,7 @@ static double rms_distance(const ck_Model *model, const double *one, const doubl
 }
 
 static bool has_rest(const ck_Run *run, const ck_Truth *truth) {
-    const unsigned foreign = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES;
+    const unsigned foreign = CK_TERM_RIGID | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     const ck_Model *model = run->model;
     return run->status == CK_RUN_OK && ck_run_has_all_frames(run) && run->engine->method != CK_METHOD_STILL &&
            truth->path_count && truth->reference.is_static && !(model->terms & foreign) &&

@@ -37,6 +37,15 @@ static bool is_drawn(const ck_Spring *spring) {
 #define PLACE_LETTERS 50
 
 // How far a collider has come at even times, which are joined by straight lines.
+// A solid's radius, and of what is no ball its axes and half its core along them; of a cylinder so much as is seen.
+static void write_solid(FILE *file, const ck_Model *model, const ck_Collider *collider) {
+    fprintf(file, " %g", collider->radius);
+    for (int k = 0; k < 9 && collider->shape != CK_SPHERE; k++) fprintf(file, " %g", collider->axes[k / 3][k % 3]);
+    for (int k = 0; k < 3 && collider->shape != CK_SPHERE; k++)
+        fprintf(file, " %g", fmin(collider->half[k], model->size));
+    fprintf(file, "\n");
+}
+
 static void write_motion(FILE *file, const ck_Model *model, const ck_Path *path) {
     const int places = (int)fmin(32, MOST_MOTION / PLACE_LETTERS / model->path_count);
     if (places < 2) return;
@@ -69,10 +78,11 @@ static void write_header(FILE *file, const ck_Comparison *comparison, int frames
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider *collider = &model->colliders[i];
         const double *point = collider->point, *normal = collider->normal;
-        if (collider->shape == CK_SPHERE)
-            fprintf(file, "sphere %g %g %g %g\n", point[0], point[1], point[2], collider->radius);
+        fprintf(file, "%s %g %g %g", ck_shape_names[collider->shape], point[0], point[1], point[2]);
+        if (collider->shape == CK_PLANE)
+            fprintf(file, " %g %g %g\n", normal[0], normal[1], normal[2]);
         else
-            fprintf(file, "plane %g %g %g %g %g %g\n", point[0], point[1], point[2], normal[0], normal[1], normal[2]);
+            write_solid(file, model, collider);
         if (collider->path) write_motion(file, model, collider->path);
     }
     fprintf(file, "data\n");

@@ -37,6 +37,7 @@ static void scale_lengths(ck_Model *model, double unit) {
     for (int i = 0; i < model->collider_count; i++) {
         divide(model->colliders[i].point, 3, unit);
         divide(&model->colliders[i].radius, 1, unit);
+        divide(model->colliders[i].half, 3, unit);
     }
 }
 

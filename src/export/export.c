@@ -92,10 +92,34 @@ static json_t *path_of(const ck_Path *path) {
     return NULL;
 }
 
+// A box's side of which half less the rounding is the half of its core again, to the last bit where there is one.
+static double side_of(const ck_Collider *collider, int axis) {
+    const double half = collider->half[axis], radius = collider->radius, side = 2 * (half + radius);
+    const double near[] = {side, nextafter(side, 0), nextafter(side, INFINITY)};
+    for (int i = 0; i < 3; i++)
+        if (0.5 * near[i] - radius == half) return near[i];
+    return side;
+}
+
 static json_t *shape_of(const ck_Collider *collider) {
+    const double *at = collider->point, *axis = collider->axes[0], *half = collider->half, radius = collider->radius,
+                 restitution = collider->restitution, friction = collider->friction;
+    double from[3], to[3];
+    for (int k = 0; k < 3; k++) from[k] = at[k] - half[0] * axis[k], to[k] = at[k] + half[0] * axis[k];
     if (collider->shape == CK_SPHERE)
-        return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(collider->point), "radius",
-                         collider->radius, "restitution", collider->restitution, "friction", collider->friction);
+        return json_pack("{s:{s:o, s:f, s:f, s:f}}", "sphere", "center", vector_of(at), "radius", radius, "restitution",
+                         restitution, "friction", friction);
+    if (collider->shape == CK_CAPSULE)
+        return json_pack("{s:{s:o, s:o, s:f, s:f, s:f}}", "capsule", "from", vector_of(from), "to", vector_of(to),
+                         "radius", radius, "restitution", restitution, "friction", friction);
+    if (collider->shape == CK_CYLINDER)
+        return json_pack("{s:{s:o, s:o, s:f, s:f, s:f}}", "cylinder", "point", vector_of(at), "axis", vector_of(axis),
+                         "radius", radius, "restitution", restitution, "friction", friction);
+    if (collider->shape == CK_BOX)
+        return json_pack("{s:{s:o, s:[f, f, f], s:o, s:o, s:f, s:f, s:f}}", "box", "center", vector_of(at), "size",
+                         side_of(collider, 0), side_of(collider, 1), side_of(collider, 2), "along", vector_of(axis),
+                         "up", vector_of(collider->axes[1]), "rounding", radius, "restitution", restitution, "friction",
+                         friction);
     return json_pack("{s:{s:o, s:o, s:f, s:f}}", "plane", "point", vector_of(collider->point), "normal",
                      vector_of(collider->normal), "restitution", collider->restitution, "friction", collider->friction);
 }
@@ -293,19 +317,31 @@ static void write_moves(FILE *out, const ck_Model *model) {
     }
 }
 
+// Its place, then its normal or its axes and half its core along them, then its radius, restitution and friction.
+static void write_collider(FILE *out, const ck_Collider *collider) {
+    double numbers[20];
+    int count = 3;
+    memcpy(numbers, collider->point, sizeof collider->point);
+    if (collider->shape == CK_PLANE) {
+        memcpy(numbers + count, collider->normal, sizeof collider->normal);
+        count += 3;
+    } else if (collider->shape != CK_SPHERE) {
+        memcpy(numbers + count, collider->axes, sizeof collider->axes);
+        memcpy(numbers + count + 9, collider->half, sizeof collider->half);
+        count += 12;
+    }
+    if (collider->shape != CK_PLANE) numbers[count++] = collider->radius;
+    numbers[count++] = collider->restitution;
+    numbers[count++] = collider->friction;
+    line(out, ck_shape_names[collider->shape], numbers, count);
+}
+
 static void write_colliders(FILE *out, const ck_Model *model) {
     int moving = 0;
     fprintf(out, "colliders %d\n", model->collider_count);
     for (int i = 0; i < model->collider_count; i++) {
-        const ck_Collider *collider = &model->colliders[i];
-        const double *at = collider->point, *n = collider->normal;
-        const double ball[] = {at[0], at[1], at[2], collider->radius, collider->restitution, collider->friction},
-                     plane[] = {at[0], at[1], at[2], n[0], n[1], n[2], collider->restitution, collider->friction};
-        moving += collider->path != NULL;
-        if (collider->shape == CK_SPHERE)
-            line(out, "sphere", ball, 6);
-        else
-            line(out, "plane", plane, 8);
+        write_collider(out, &model->colliders[i]);
+        moving += model->colliders[i].path != NULL;
     }
     if (moving) fprintf(out, "moving %d\n", moving);
     for (int i = 0; i < model->collider_count; i++) {

@@ -27,18 +27,18 @@ static const ck_Layout springs = {"springs.csv",
                                    {"damping", CK_COLUMN_NUMBER},
                                    {"kind", CK_COLUMN_NAME}}};
 
-static const ck_Layout colliders = {"colliders.csv",
-                                    "planes and balls",
-                                    {{"shape", CK_COLUMN_NAME},
-                                     {"x", CK_COLUMN_NUMBER},
-                                     {"y", CK_COLUMN_NUMBER},
-                                     {"z", CK_COLUMN_NUMBER},
-                                     {"normal_x", CK_COLUMN_NUMBER},
-                                     {"normal_y", CK_COLUMN_NUMBER},
-                                     {"normal_z", CK_COLUMN_NUMBER},
-                                     {"radius", CK_COLUMN_NUMBER},
-                                     {"restitution", CK_COLUMN_NUMBER},
-                                     {"friction", CK_COLUMN_NUMBER}}};
+static const ck_Layout colliders = {
+    "colliders.csv",
+    "planes, balls, and what is no farther than a radius from a core: capsules, endless cylinders and boxes; axes and "
+    "half of the core along them, m",
+    {{"shape", CK_COLUMN_NAME},      {"x", CK_COLUMN_NUMBER},        {"y", CK_COLUMN_NUMBER},
+     {"z", CK_COLUMN_NUMBER},        {"normal_x", CK_COLUMN_NUMBER}, {"normal_y", CK_COLUMN_NUMBER},
+     {"normal_z", CK_COLUMN_NUMBER}, {"radius", CK_COLUMN_NUMBER},   {"restitution", CK_COLUMN_NUMBER},
+     {"friction", CK_COLUMN_NUMBER}, {"axis1_x", CK_COLUMN_NUMBER},  {"axis1_y", CK_COLUMN_NUMBER},
+     {"axis1_z", CK_COLUMN_NUMBER},  {"axis2_x", CK_COLUMN_NUMBER},  {"axis2_y", CK_COLUMN_NUMBER},
+     {"axis2_z", CK_COLUMN_NUMBER},  {"axis3_x", CK_COLUMN_NUMBER},  {"axis3_y", CK_COLUMN_NUMBER},
+     {"axis3_z", CK_COLUMN_NUMBER},  {"half_1", CK_COLUMN_NUMBER},   {"half_2", CK_COLUMN_NUMBER},
+     {"half_3", CK_COLUMN_NUMBER}}};
 
 static const ck_Layout moves = {"moves.csv",
                                 "where each pin that moves is at every frame, s and m",
@@ -118,12 +118,15 @@ static void add_collider_moves(ck_Csv *csv, const ck_Model *model) {
 static void add_colliders(ck_Csv *csv, const ck_Model *model) {
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider *collider = &model->colliders[i];
-        bool is_ball = collider->shape == CK_SPHERE;
-        ck_csv_text(csv, is_ball ? "sphere" : "plane");
+        const bool is_plane = collider->shape == CK_PLANE;
+        ck_csv_text(csv, ck_shape_names[collider->shape]);
         add_numbers(csv, collider->point, 3);
-        for (int axis = 0; axis < 3; axis++) ck_csv_number(csv, is_ball ? NAN : collider->normal[axis]);
-        const double rest[] = {is_ball ? collider->radius : NAN, collider->restitution, collider->friction};
+        for (int axis = 0; axis < 3; axis++) ck_csv_number(csv, is_plane ? collider->normal[axis] : NAN);
+        const double rest[] = {is_plane ? NAN : collider->radius, collider->restitution, collider->friction};
         add_numbers(csv, rest, 3);
+        for (int k = 0; k < 9; k++)
+            ck_csv_number(csv, collider->shape > CK_SPHERE ? collider->axes[k / 3][k % 3] : NAN);
+        for (int k = 0; k < 3; k++) ck_csv_number(csv, collider->shape > CK_SPHERE ? collider->half[k] : NAN);
     }
 }
 

@@ -15,6 +15,33 @@ ck_Collider ck_collider_at(const ck_Collider *collider, double time, int side, d
 // The distance of a point from the surface, in m, negative inside; normal: out, unit, away from the collider.
 double ck_collider_gap(const ck_Collider *collider, const double *point, double *normal);
 
+// Half of how thick a shape is where it is thinnest, m; INFINITY: a half-space.
+double ck_collider_breadth(const ck_Collider *collider);
+
+// The terms that a collider makes a scene have.
+unsigned ck_collider_terms(const ck_Collider *collider);
+
+// The part of a shape that a point is nearest to, by its axes: −1 or 1 where it is beyond that end of the core, 0
+// between the two. Of a box: corners, edges and faces. Planes and spheres have one.
+typedef struct ck_Part {
+    signed char beyond[3];
+} ck_Part;
+
+// velocity, of a point at the border of two parts: it is on the one that it goes to.
+ck_Part ck_collider_part(const ck_Collider *collider, const double *point, const double *velocity);
+
+// True for a plane and the face of a box.
+bool ck_collider_is_flat(const ck_Collider *collider, ck_Part part);
+
+// As ck_collider_gap, of the surface of which a part is a piece: a plane, a cylinder or a ball without end.
+double ck_collider_part_gap(const ck_Collider *collider, ck_Part part, const double *point, double *normal);
+
+// How far a point is beyond the border of a part along an axis, m: negative inside.
+double ck_collider_part_excess(const ck_Collider *collider, int axis, const double *point);
+
+// What a speed along a part's surface, m/s, asks of acceleration towards it: v²/r across what is curved, m/s².
+double ck_collider_turn(const ck_Collider *collider, ck_Part part, const double *along);
+
 // The first time in (0, duration] at which a point that moves by x + v·t + a·t²/2 comes to touch the surface from
 // outside, in s; INFINITY where it does not. A point that starts within slack (m) of it is outside as long as it
 // leaves.

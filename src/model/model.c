@@ -27,7 +27,10 @@ const char *const ck_term_names[CK_TERM_COUNT] = {
     "springs that only pull",
     "moving pins",
     "moving colliders",
+    "capsules, cylinders or boxes",
 };
+
+const char *const ck_shape_names[CK_SHAPE_COUNT] = {"plane", "sphere", "capsule", "cylinder", "box"};
 
 const char *const ck_stiffness_names[CK_SPRING_KINDS] = {"structural stiffness", "shear stiffness",
                                                          "second-neighbour stiffness"};
@@ -140,34 +143,6 @@ static ck_Status set_releases(ck_Model *model, const ck_Scene *scene, ck_Error *
     if (!model->releases) return CK_NO_MEMORY;
     ck_Status status = CK_OK;
     for (uint32_t i = 0; i < scene->file->release_count && !status; i++) status = set_release(model, scene, i, error);
-    return status;
-}
-
-static ck_Status set_collider(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
-    const ck_SceneCollider *from = &scene->file->colliders[index];
-    ck_Collider *collider = &model->colliders[model->collider_count++];
-    if (from->sphere) {
-        *collider = (ck_Collider){.shape = CK_SPHERE,
-                                  .radius = from->sphere->radius,
-                                  .restitution = from->sphere->restitution,
-                                  .friction = from->sphere->friction};
-        memcpy(collider->point, from->sphere->center, sizeof collider->point);
-        return CK_OK;
-    }
-    *collider =
-        (ck_Collider){.shape = CK_PLANE, .restitution = from->plane->restitution, .friction = from->plane->friction};
-    memcpy(collider->point, from->plane->point, sizeof collider->point);
-    char path[48];
-    snprintf(path, sizeof path, "colliders[%u].plane.normal", index);
-    return ck_model_unit(collider->normal, from->plane->normal, scene, path, error);
-}
-
-static ck_Status set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-    model->colliders = calloc(scene->file->colliders_count + 1, sizeof *model->colliders);
-    if (!model->colliders) return CK_NO_MEMORY;
-    ck_Status status = CK_OK;
-    for (uint32_t i = 0; i < scene->file->colliders_count && !status; i++)
-        status = set_collider(model, scene, i, error);
     return status;
 }
 
@@ -290,9 +265,7 @@ static unsigned terms_in_use(const ck_Model *model) {
     if (model->drag > 0) terms |= CK_TERM_DRAG;
     for (int i = 0; i < model->particle_count; i++)
         if (ck_length(model->velocity + 3 * i) > 0) terms |= CK_TERM_VELOCITY;
-    for (int i = 0; i < model->collider_count; i++)
-        terms |= (model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE) |
-                 (model->colliders[i].path ? CK_TERM_MOVING_COLLIDERS : 0);
+    for (int i = 0; i < model->collider_count; i++) terms |= ck_collider_terms(&model->colliders[i]);
     if (model->release_count) terms |= CK_TERM_RELEASE;
     if (model->driven_count) terms |= CK_TERM_MOVES;
     if (model->hinge_count) terms |= CK_TERM_BENDING;
@@ -313,7 +286,7 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (!status) status = set_pins(model, scene, error);
     if (!status) status = set_start(model, scene, error);
     if (!status) status = set_releases(model, scene, error);
-    if (!status) status = set_colliders(model, scene, error);
+    if (!status) status = ck_model_set_colliders(model, scene, error);
     if (!status) status = ck_model_set_paths(model, scene, error);
     if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
     if (status) return status;

@@ -30,7 +30,9 @@ typedef enum ck_Term {
     CK_TERM_PULL_ONLY = 1 << 12, // springs that hang slack where they are shorter than at rest
     CK_TERM_MOVES = 1 << 13,     // pins that are moved
     CK_TERM_MOVING_COLLIDERS = 1 << 14,
-    CK_TERM_COUNT = 15,
+    CK_TERM_SOLIDS = 1 << 15, // capsules, cylinders or boxes
+    CK_TERM_COUNT = 16,
+    CK_TERM_COLLIDERS = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_SOLIDS,
 } ck_Term;
 
 // The name of the term in bit order, as a scene's author knows it.
@@ -85,13 +87,18 @@ typedef struct ck_Driven {
     double until;        // s: when it is let go; INFINITY: never
 } ck_Driven;
 
-typedef enum ck_ColliderShape { CK_PLANE, CK_SPHERE } ck_ColliderShape;
+typedef enum ck_ColliderShape { CK_PLANE, CK_SPHERE, CK_CAPSULE, CK_CYLINDER, CK_BOX, CK_SHAPE_COUNT } ck_ColliderShape;
 
+extern const char *const ck_shape_names[CK_SHAPE_COUNT];
+
+// A half-space, or what is no farther than a radius from a core: a point, a line or a box.
 typedef struct ck_Collider {
     ck_ColliderShape shape;
-    double point[3];  // m: a point of the plane, or the sphere's centre
-    double normal[3]; // unit, plane only
-    double radius;    // m, sphere only
+    double point[3];   // m: a point of the plane, or the middle of the core
+    double normal[3];  // unit, plane only
+    double radius;     // m: of a box that of its edges, 0 where they are sharp
+    double axes[3][3]; // unit, square to one another, that of a capsule or a cylinder first; of a sphere any
+    double half[3];    // m, of the core along them: 0 where it is a point or a line, INFINITY along a cylinder
     double restitution, friction;
     const ck_Path *path; // of the model's; NULL: it stays
 } ck_Collider;

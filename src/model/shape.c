@@ -27,7 +27,7 @@ bool ck_shape_is_even_chain(const ck_Model *model) {
 }
 
 bool ck_shape_is_falling(const ck_Model *model) {
-    bool falling = !model->wind.face_count && !model->pin_count && !(model->terms & (CK_TERM_PLANE | CK_TERM_SPHERE)) &&
+    bool falling = !model->wind.face_count && !model->pin_count && !(model->terms & (CK_TERM_COLLIDERS)) &&
                    ck_springs_start_at_rest(model);
     for (int i = 0; i < model->hinge_count; i++)
         falling &= fabs(ck_hinge_angle(&model->hinges[i], model->position) - model->hinges[i].rest) <= 1e-9;

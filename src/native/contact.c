@@ -133,14 +133,15 @@ static void strike(const ck_Contact *contact, const ck_Collider *collider, const
 }
 
 // How hard a surface is pressed on, per mass: what bends the path inwards counts as not pressing. ≤ 0: not at all.
-static double pressing(const ck_Collider *collider, const double *normal, const double *v, const double *a) {
-    double turn = collider->shape == CK_SPHERE ? ck_dot(v, v) / collider->radius : 0;
-    return -ck_dot(a, normal) - turn;
+static double pressing(const ck_Collider *collider, const double *normal, const double *x, const double *v,
+                       const double *a) {
+    return -ck_dot(a, normal) - ck_collider_turn(collider, ck_collider_part(collider, x, v), v);
 }
 
 // One collider's part of ck_contact_filter; false where it is not pressed on.
-static bool hold(const ck_Collider *collider, const double *normal, double dt, const double *v, double *a) {
-    double press = pressing(collider, normal, v, a), along[3], drive[3];
+static bool hold(const ck_Collider *collider, const double *normal, double dt, const double *x, const double *v,
+                 double *a) {
+    double press = pressing(collider, normal, x, v, a), along[3], drive[3];
     if (!(press > 0)) return false;
     ck_tangential(along, v, normal);
     ck_add_scaled(a, -ck_dot(a, normal), normal);
@@ -193,7 +194,7 @@ static inline __attribute__((always_inline)) const ck_Collider *support(const ck
         if (ck_collider_gap(collider, seen.x, out) > contact->slack) continue;
         // leaving, faster than rounding: that of the collider's own speed, too
         if (ck_dot(seen.v, out) > 1e-12 * (moves ? ck_length(seen.v) + ck_length(v) : ck_length(v))) continue;
-        if (!hold(collider, out, contact->dt, seen.v, moves ? seen.own[2] : left)) continue;
+        if (!hold(collider, out, contact->dt, seen.x, seen.v, moves ? seen.own[2] : left)) continue;
         if (moves) {
             memcpy(left, seen.a, 3 * sizeof(double));
             ck_add_scaled(left, 1, motion_of(contact, collider)->acceleration);
@@ -256,14 +257,15 @@ static void stop_along(double *v, const double *way) {
 static void slide(const ck_Collider *carrier, double *x, double *v, const double *a, const double *left, double time,
                   Ending ending) {
     double from[3], way[3], slid[3], normal[3], speed_squared = ck_dot(v, v), press;
+    const bool is_flat = ck_collider_is_flat(carrier, ck_collider_part(carrier, x, v));
     memcpy(from, x, sizeof from);
     memcpy(slid, v, sizeof slid);
     ck_collider_gap(carrier, x, normal);
-    press = pressing(carrier, normal, v, a);
+    press = pressing(carrier, normal, x, v, a);
     fly(x, v, left, time);
     if (ending == STOPS) memset(v, 0, 3 * sizeof(double));
     if (ending == TURNS) stop_along(v, slid);
-    if (carrier->shape == CK_PLANE) return;
+    if (is_flat) return;
     place(carrier, x, normal);
     ck_add_scaled(v, -ck_dot(v, normal), normal);
     if (ending != GOES_ON) return;
@@ -272,6 +274,30 @@ static void slide(const ck_Collider *carrier, double *x, double *v, const double
     double speed = ck_length(v);
     double scale = speed > 0 ? sqrt(fmax(0, speed_squared)) / speed : 0;
     for (int axis = 0; axis < 3; axis++) v[axis] *= scale;
+}
+
+// The first time after which c + v·t + a·t²/2 is above 0, from below it; INFINITY: never.
+static double rise_time(double c, double v, double a) {
+    const double root = v * v - 2 * a * c;
+    if (root < 0) return INFINITY;
+    const double time = v > 0 ? -2 * c / (v + sqrt(root)) : a > 0 ? (sqrt(root) - v) / a : INFINITY;
+    return time > 0 ? time : INFINITY;
+}
+
+// When a slide leaves a face of a box, s, beyond which the surface turns away.
+static double border_time(const ck_Collider *collider, const double *x, const double *v, const double *a) {
+    if (collider->shape != CK_BOX) return INFINITY;
+    const ck_Part part = ck_collider_part(collider, x, v);
+    double first = INFINITY, from[3];
+    ck_subtract(from, x, collider->point);
+    for (int k = 0; k < 3; k++) {
+        const double *axis = collider->axes[k], local = ck_dot(axis, from);
+        if (part.beyond[k]) continue;
+        for (int sign = -1; sign <= 1; sign += 2)
+            first = fmin(first, rise_time(fmin(0, sign * local - collider->half[k]), sign * ck_dot(axis, v),
+                                          sign * ck_dot(axis, a)));
+    }
+    return first;
 }
 
 static inline __attribute__((always_inline)) const ck_Collider *first_hit(const ck_Contact *contact, const double *x,
@@ -330,9 +356,11 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
         Ending ending = GOES_ON;
         double stop = INFINITY;
         if (carrier && carrier->friction > 0)
-            stop = stop_time(carrier->friction * pressing(carrier, normal, seen.v, seen.a), seen.v, rest.a, &ending);
-        if (stop > time) ending = GOES_ON;
-        time = fmin(time, stop);
+            stop = stop_time(carrier->friction * pressing(carrier, normal, seen.x, seen.v, seen.a), seen.v, rest.a,
+                             &ending);
+        const double border = carrier ? border_time(carrier, seen.x, seen.v, rest.a) : INFINITY;
+        if (stop > fmin(time, border)) ending = GOES_ON;
+        time = fmin(time, fmin(stop, border));
         const ck_Collider *hit = first_hit(contact, x, v, left, elapsed, moves, &time);
         if (carrier) {
             slide(carrier, seen.x, seen.v, seen.a, rest.a, time, hit ? GOES_ON : ending);

@@ -35,7 +35,7 @@ typedef struct ck_Native {
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
     (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |           \
-     CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
+     CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
 
 // Allocates and sets the start state. Errors: CK_NO_MEMORY.
 ck_Status ck_native_create(ck_Native **native, const ck_Model *model, const ck_Settings *used, ck_Error *error);

@@ -209,7 +209,7 @@ static void strip(ck_Model *model) {
     for (int i = 0; i < model->spring_count; i++) model->springs[i].damping = 0;
     model->drag = 0;
     model->collider_count = 0;
-    model->terms &= ~(unsigned)(CK_TERM_DAMPING | CK_TERM_DRAG | CK_TERM_PLANE | CK_TERM_SPHERE);
+    model->terms &= ~(unsigned)(CK_TERM_DAMPING | CK_TERM_DRAG | CK_TERM_COLLIDERS);
 }
 
 static ck_Status sweep(ck_Csv *csv, const Claim *claim, const ck_Scene *scene, ck_Model *model,

@@ -2,7 +2,7 @@
 #ifndef CK_LAYOUT_H
 #define CK_LAYOUT_H
 
-#define CK_LAYOUT_MOST_COLUMNS 20
+#define CK_LAYOUT_MOST_COLUMNS 24
 
 typedef enum ck_ColumnKind {
     CK_COLUMN_NAME,   // text that is never empty

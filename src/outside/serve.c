@@ -1,5 +1,6 @@
 #include "serve.h"
 
+#include "collider.h"
 #include "outside_words.h"
 
 #include <math.h>
@@ -96,13 +97,14 @@ static void read_colliders(Server *server) {
     for (int i = 0; i < model->collider_count; i++) {
         ck_Collider *collider = &model->colliders[i];
         if (!next_word(server)) fail("the scene ends within a collider");
-        bool is_ball = !strcmp(server->word, "sphere");
-        collider->shape = is_ball ? CK_SPHERE : CK_PLANE;
+        while (collider->shape < CK_SHAPE_COUNT && strcmp(server->word, ck_shape_names[collider->shape]))
+            collider->shape++;
+        if (collider->shape == CK_SHAPE_COUNT) fail("a collider of no known shape");
         vector(server, collider->point);
-        if (is_ball)
-            collider->radius = number(server);
-        else
-            vector(server, collider->normal);
+        if (collider->shape == CK_PLANE) vector(server, collider->normal);
+        for (int k = 0; k < 3 && collider->shape > CK_SPHERE; k++) vector(server, collider->axes[k]);
+        if (collider->shape > CK_SPHERE) vector(server, collider->half);
+        if (collider->shape != CK_PLANE) collider->radius = number(server);
         collider->restitution = number(server);
         collider->friction = number(server);
     }
@@ -239,9 +241,7 @@ static unsigned terms_of(const ck_Model *model) {
     if (model->drag > 0) terms |= CK_TERM_DRAG;
     for (int i = 0; i < 3 * model->particle_count; i++)
         if (model->velocity[i] != 0) terms |= CK_TERM_VELOCITY;
-    for (int i = 0; i < model->collider_count; i++)
-        terms |= (model->colliders[i].shape == CK_PLANE ? CK_TERM_PLANE : CK_TERM_SPHERE) |
-                 (model->colliders[i].path ? CK_TERM_MOVING_COLLIDERS : 0);
+    for (int i = 0; i < model->collider_count; i++) terms |= ck_collider_terms(&model->colliders[i]);
     return terms;
 }
 

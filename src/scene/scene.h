@@ -114,6 +114,23 @@ typedef struct ck_SceneSphere {
     double restitution, friction;
 } ck_SceneSphere;
 
+typedef struct ck_SceneCapsule {
+    double from[3], to[3], radius; // around the line between the two
+    double restitution, friction;
+} ck_SceneCapsule;
+
+typedef struct ck_SceneCylinder {
+    double point[3], axis[3], radius; // without ends
+    double restitution, friction;
+} ck_SceneCylinder;
+
+typedef struct ck_SceneBox {
+    double center[3], size[3];
+    double *along, *up; // [3] directions of its first and second side; NULL: x and y
+    double rounding;    // m, of its edges
+    double restitution, friction;
+} ck_SceneBox;
+
 // How something moves from where it starts: in one of four ways.
 typedef struct ck_ScenePath {
     double from, to;     // s, of the first two ways: it stays before and after; to 0: to the end
@@ -128,6 +145,9 @@ typedef struct ck_ScenePath {
 typedef struct ck_SceneCollider {
     ck_ScenePlane *plane;
     ck_SceneSphere *sphere;
+    ck_SceneCapsule *capsule;
+    ck_SceneCylinder *cylinder;
+    ck_SceneBox *box;
     ck_ScenePath *path; // NULL: it stays
 } ck_SceneCollider;
 

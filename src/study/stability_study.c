@@ -184,7 +184,7 @@ ck_Status ck_stability_map_create(ck_StabilityMap *map, const ck_Comparison *com
                                   const ck_CompareOptions *options, ck_Error *error) {
     *map = (ck_StabilityMap){.comparison = comparison, .options = options};
     const ck_Reference *reference = &comparison->truth.reference;
-    const unsigned foreign = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES;
+    const unsigned foreign = CK_TERM_RIGID | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     if (!reference->is_static || !reference->trajectory.frame_count || (comparison->model.terms & foreign))
         return ck_fail(error, CK_BAD_INPUT,
                        "%s: stability is mapped about a rest: the scene needs springs, a truth at rest such as "

@@ -246,7 +246,7 @@ static double *about_first(const ck_Model *model, const double *position) {
 }
 
 static ck_Status check(const ck_Model *model, ck_Error *error) {
-    const unsigned beyond = CK_TERM_RIGID | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES;
+    const unsigned beyond = CK_TERM_RIGID | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     if (!(model->terms & beyond) && model->pin_count && ck_stability_load(model) > 0 && !ck_wind_blows(model))
         return CK_OK;
     return ck_fail(error, CK_REFUSED,

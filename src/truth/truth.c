@@ -22,7 +22,7 @@
 #define CLOSED "closed form"
 // What a form must say that it knows.
 #define EXTRAS                                                                                                         \
-    (CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |             \
+    (CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |             \
      CK_TERM_MOVING_COLLIDERS)
 
 // Adding a truth is one function and one row here.
@@ -38,7 +38,7 @@ static const ck_TruthForm forms[] = {
      .terms = EXTRAS, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
      true,
-     .terms = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
+     .terms = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
               CK_TERM_MOVING_COLLIDERS,
      .check = ck_truth_rest_check},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
@@ -76,7 +76,7 @@ static const ck_TruthForm forms[] = {
     {"sphere_slide", CLOSED,
      "theta'' = (g/R)*sin(theta) up to cos(theta) = 2/3*cos(theta_0) + v_0^2/(3*g*R), then falls", false,
      .terms = CK_TERM_SPHERE, .at = ck_truth_sphere_slide, .nudge = ck_truth_nudge_sphere_slide},
-    {"strike", CLOSED, "comes back at e times the speed it came with", false, .terms = CK_TERM_PLANE | CK_TERM_SPHERE,
+    {"strike", CLOSED, "comes back at e times the speed it came with", false, .terms = CK_TERM_COLLIDERS,
      .at = ck_truth_strike},
     {"capstan", "rope on its arc",
      "springs and friction of a chain along the arc over a ball; light: T_2 = T_1*e^(mu*pi)", false,

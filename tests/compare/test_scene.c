@@ -102,7 +102,18 @@ static const struct {
     {"step beyond duration", ROPE "time: {duration: 1, step: 3}\n", ":4:7:", "is 0.333333333 frames"},
     {"restitution above 1", ROPE TIME "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0], restitution: 2}}]\n",
      ":5:72:", "from 0 to 1"},
-    {"collider of no shape", ROPE TIME "colliders: [{}]\n", ":5:13:", "none of plane and sphere"},
+    {"collider of no shape", ROPE TIME "colliders: [{}]\n",
+     ":5:13:", "none of plane, sphere, capsule, cylinder and box"},
+    {"capsule without length", ROPE TIME "colliders: [{capsule: {from: [0, 9, 0], to: [0, 9, 0], radius: 1}}]\n",
+     ":5:", "a sphere has its place as center"},
+    {"axis without direction", ROPE TIME "colliders: [{cylinder: {point: [0, 9, 0], axis: [0, 0, 0], radius: 1}}]\n",
+     ":5:", "no direction"},
+    {"box too round", ROPE TIME "colliders: [{box: {center: [0, 9, 0], size: [1, 1, 0.3], rounding: 0.2}}]\n",
+     ":5:", "no room for edges rounded by 0.2 m"},
+    {"box of one direction",
+     ROPE TIME "colliders: [{box: {center: [0, 9, 0], size: [1, 1, 1], along: [0, 1, 0], up: [0, 2, 0]}}]\n",
+     ":5:", "along and up are one direction"},
+    {"flat box", ROPE TIME "colliders: [{box: {center: [0, 9, 0], size: [1, 0, 1]}}]\n", ":5:", "above 0"},
     {"normal without direction", ROPE TIME "colliders: [{plane: {point: [0, 0, 0], normal: [0, 0, 0]}}]\n",
      ":5:48:", "no direction"},
     {"a start inside a plane", ROPE TIME "colliders: [{plane: {point: [0, -0.1, 0], normal: [0, 1, 0]}}]\n",
@@ -271,7 +282,11 @@ static void test_every_key(void **state) {
         "0]\nvelocity: [0, 0, 1]\n"
         "colliders: [{plane: {point: [0, -1, 0], normal: [0, 2, 0], restitution: 0.6, friction: 0.3}},\n"
         "            {sphere: {center: [0, -1, 0], radius: 0.3, restitution: 0.2, friction: 0.5}, path: {velocity: [0, "
-        "1, 0], to: 3}}]\n"
+        "1, 0], to: 3}},\n"
+        "            {capsule: {from: [0, -2, 0], to: [1, -2, 0], radius: 0.3, restitution: 0.2, friction: 0.5}},\n"
+        "            {cylinder: {point: [0, -3, 0], axis: [0, 0, 3], radius: 0.3, restitution: 0.2, friction: 0.5}},\n"
+        "            {box: {center: [0, -4, 0], size: [1, 0.5, 2], along: [0, 0, 1], up: [0, 1, 1], rounding: 0.1, "
+        "restitution: 0.2, friction: 0.5}}]\n"
         "moves: [{pins: [5], path: {amplitude: [0, 0, 1], frequency: 0.1}}]\n"
         "release: [{at: 1, pins: [top_left, 2:3]}]\ntime: {duration: 4, step: 0.5}\nmeasure: [sag]\n"
         "settings: {ode-quick: {substeps: 16, iterations: 20, relaxation: 1.2}}\n");

@@ -57,7 +57,7 @@ static double pick(ck_Random *random, double from, double to) {
 // A rope or a small cloth that falls on a ball, a floor or a slope, by seed.
 static void write_scene(char *text, size_t size, uint64_t seed) {
     ck_Random random = ck_random_seed(seed);
-    char body[200], collider[200];
+    char body[200], collider[240];
     const double x = pick(&random, -0.1, 0.1), z = pick(&random, -0.1, 0.1);
     if (ck_random_unit(&random) < 0.5)
         snprintf(body, sizeof body,
@@ -70,9 +70,25 @@ static void write_scene(char *text, size_t size, uint64_t seed) {
                  2 + (int)(3 * ck_random_unit(&random)), pick(&random, -0.2, 0.2), x - 0.15, z - 0.15);
     const double friction = ck_random_unit(&random) < 0.3 ? 0 : pick(&random, 0.1, 1),
                  restitution = ck_random_unit(&random) < 0.5 ? 0 : pick(&random, 0.1, 0.8);
-    if (ck_random_unit(&random) < 0.6)
+    const double shape = ck_random_unit(&random), tilt = pick(&random, -0.3, 0.3);
+    if (shape < 0.25)
         snprintf(collider, sizeof collider,
                  "sphere: {center: [0, 0, 0], radius: 0.3, friction: %.3f, restitution: %.3f}", friction, restitution);
+    else if (shape < 0.4)
+        snprintf(
+            collider, sizeof collider,
+            "capsule: {from: [-0.2, 0.1, %.3f], to: [0.1, 0, 0.1], radius: 0.2, friction: %.3f, restitution: %.3f}",
+            tilt, friction, restitution);
+    else if (shape < 0.55)
+        snprintf(collider, sizeof collider,
+                 "cylinder: {point: [0, 0, 0], axis: [0.2, %.3f, 1], radius: 0.25, friction: %.3f, restitution: %.3f}",
+                 tilt, friction, restitution);
+    else if (shape < 0.8)
+        snprintf(
+            collider, sizeof collider,
+            "box: {center: [0, 0, 0], size: [0.3, 0.4, 0.35], along: [1, %.3f, 0.2], rounding: %s, friction: %.3f, "
+            "restitution: %.3f}",
+            tilt, shape < 0.7 ? "0.05" : "0", friction, restitution);
     else
         snprintf(collider, sizeof collider,
                  "plane: {point: [0, 0.2, 0], normal: [%.3f, 1, 0.1], friction: %.3f, restitution: %.3f}",
@@ -133,8 +149,8 @@ static void test_random_scenes(void **state) {
         ck_reference_path_free(&path);
         fixture_free(&fixture);
     }
-    // what the bound is of would be small where all had parted early
-    assert_true(whole >= 0.9 * SEEDS);
+    // what the bound is of would be small where all had parted early; sharp edges part many
+    assert_true(whole >= 0.75 * SEEDS);
 }
 
 #define ROPE_ON_A_BALL                                                                                                 \

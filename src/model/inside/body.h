@@ -35,6 +35,9 @@ double ck_body_share_area(ck_Model *model, double density);
 // The air of a scene, and the faces that it acts on. Errors: CK_BAD_INPUT where there are none, CK_NO_MEMORY.
 ck_Status ck_model_set_wind(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 
+// Errors: CK_BAD_INPUT at the place of a shape that is none, CK_NO_MEMORY.
+ck_Status ck_model_set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error *error);
+
 // The paths of the pins and colliders that move. Errors: CK_BAD_INPUT, CK_NO_MEMORY.
 ck_Status ck_model_set_paths(ck_Model *model, const ck_Scene *scene, ck_Error *error);
 

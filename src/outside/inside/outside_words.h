@@ -5,7 +5,7 @@
 #include "model.h"
 
 static const char *const ck_term_words[CK_TERM_COUNT] = {
-    "springs", "rigid",   "damping", "gravity", "force", "drag",  "velocity",        "plane",
-    "sphere",  "release", "bending", "wind",    "slack", "moves", "moving_colliders"};
+    "springs", "rigid",   "damping", "gravity", "force", "drag",  "velocity",         "plane",
+    "sphere",  "release", "bending", "wind",    "slack", "moves", "moving_colliders", "solids"};
 
 #endif

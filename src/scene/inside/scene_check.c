@@ -245,12 +245,12 @@ ck_Status ck_scene_check(const ck_Document *document, const cyaml_schema_value_t
     if (!status)
         status = check_one_of(&check, ck_document_find(document, "time"), clocks, "time",
                               "step and fps; it needs one of the two");
-    static const char *const shapes[] = {"plane", "sphere", NULL};
+    static const char *const shapes[] = {"plane", "sphere", "capsule", "cylinder", "box", NULL};
     yaml_node_t *colliders = ck_document_find(document, "colliders");
     if (status || colliders->type != YAML_SEQUENCE_NODE) return status;
     for (yaml_node_item_t *item = colliders->data.sequence.items.start;
          item < colliders->data.sequence.items.top && !status; item++)
-        status =
-            check_one_of(&check, yaml_document_get_node(check.yaml, *item), shapes, "a collider", "plane and sphere");
+        status = check_one_of(&check, yaml_document_get_node(check.yaml, *item), shapes, "a collider",
+                              "plane, sphere, capsule, cylinder and box");
     return status;
 }

@@ -48,6 +48,16 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"colliders[].sphere.radius", CK_RANGE_POSITIVE},
     {"colliders[].sphere.restitution", CK_RANGE_UNIT},
     {"colliders[].sphere.friction", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].capsule.radius", CK_RANGE_POSITIVE},
+    {"colliders[].capsule.restitution", CK_RANGE_UNIT},
+    {"colliders[].capsule.friction", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].cylinder.radius", CK_RANGE_POSITIVE},
+    {"colliders[].cylinder.restitution", CK_RANGE_UNIT},
+    {"colliders[].cylinder.friction", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].box.size", CK_RANGE_POSITIVE},
+    {"colliders[].box.rounding", CK_RANGE_NOT_NEGATIVE},
+    {"colliders[].box.restitution", CK_RANGE_UNIT},
+    {"colliders[].box.friction", CK_RANGE_NOT_NEGATIVE},
     {"moves[].path.from", CK_RANGE_NOT_NEGATIVE},
     {"moves[].path.to", CK_RANGE_POSITIVE},
     {"moves[].path.frequency", CK_RANGE_POSITIVE},
@@ -208,6 +218,35 @@ static const cyaml_schema_field_t sphere_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_field_t capsule_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("from", REQUIRED, ck_SceneCapsule, from, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("to", REQUIRED, ck_SceneCapsule, to, &number, 3),
+    CYAML_FIELD_FLOAT("radius", REQUIRED, ck_SceneCapsule, radius),
+    CYAML_FIELD_FLOAT("restitution", OPTIONAL, ck_SceneCapsule, restitution),
+    CYAML_FIELD_FLOAT("friction", OPTIONAL, ck_SceneCapsule, friction),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t cylinder_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("point", REQUIRED, ck_SceneCylinder, point, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("axis", REQUIRED, ck_SceneCylinder, axis, &number, 3),
+    CYAML_FIELD_FLOAT("radius", REQUIRED, ck_SceneCylinder, radius),
+    CYAML_FIELD_FLOAT("restitution", OPTIONAL, ck_SceneCylinder, restitution),
+    CYAML_FIELD_FLOAT("friction", OPTIONAL, ck_SceneCylinder, friction),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t box_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("center", REQUIRED, ck_SceneBox, center, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("size", REQUIRED, ck_SceneBox, size, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("along", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneBox, along, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("up", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneBox, up, &number, 3),
+    CYAML_FIELD_FLOAT("rounding", OPTIONAL, ck_SceneBox, rounding),
+    CYAML_FIELD_FLOAT("restitution", OPTIONAL, ck_SceneBox, restitution),
+    CYAML_FIELD_FLOAT("friction", OPTIONAL, ck_SceneBox, friction),
+    CYAML_FIELD_END,
+};
+
 static const cyaml_schema_value_t path_point = {CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, double, &number, 4)};
 static const cyaml_schema_field_t path_fields[] = {
     CYAML_FIELD_FLOAT("from", OPTIONAL, ck_ScenePath, from),
@@ -224,6 +263,9 @@ static const cyaml_schema_field_t path_fields[] = {
 static const cyaml_schema_field_t collider_fields[] = {
     CYAML_FIELD_MAPPING_PTR("plane", OPTIONAL, ck_SceneCollider, plane, plane_fields),
     CYAML_FIELD_MAPPING_PTR("sphere", OPTIONAL, ck_SceneCollider, sphere, sphere_fields),
+    CYAML_FIELD_MAPPING_PTR("capsule", OPTIONAL, ck_SceneCollider, capsule, capsule_fields),
+    CYAML_FIELD_MAPPING_PTR("cylinder", OPTIONAL, ck_SceneCollider, cylinder, cylinder_fields),
+    CYAML_FIELD_MAPPING_PTR("box", OPTIONAL, ck_SceneCollider, box, box_fields),
     CYAML_FIELD_MAPPING_PTR("path", OPTIONAL, ck_SceneCollider, path, path_fields),
     CYAML_FIELD_END,
 };

@@ -236,7 +236,7 @@ static bool find_rest(const Substep *step, ck_Spring *springs, double *position,
 
 bool ck_prediction_rest(const ck_Model *model, const ck_Engine *engine, const ck_Settings *used, const double *truth,
                         double *position) {
-    const unsigned foreign = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE | CK_TERM_MOVES;
+    const unsigned foreign = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     ck_Method method = engine->method;
     if (!sweeps(method) || !model->spring_count || !used->iterations || (model->terms & foreign)) return false;
     size_t vector = 3 * (size_t)model->particle_count, count = (size_t)model->spring_count;

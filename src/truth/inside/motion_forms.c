@@ -69,7 +69,7 @@ static double sine_shape(int n, int particle, double parameter) {
 }
 
 static bool has_field(const ck_Model *model) {
-    return model->terms & (CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE);
+    return model->terms & (CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_COLLIDERS | CK_TERM_RELEASE);
 }
 
 static bool has_equal_masses(const ck_Model *model) {
@@ -203,7 +203,7 @@ static bool is_let_go_whole(const ck_Model *model) {
 }
 
 ck_Status ck_truth_slinky(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
-    const unsigned others = CK_TERM_RIGID | CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_PLANE | CK_TERM_SPHERE;
+    const unsigned others = CK_TERM_RIGID | CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_COLLIDERS;
     const int count = model->particle_count;
     double along[3], centre = 0, field[3];
     bool fits = is_straight(model, along, &centre) && count <= MAX_MODES && has_equal_masses(model) &&
@@ -320,7 +320,7 @@ ck_Status ck_truth_hanging_chain(const ck_Model *model, double time, double *pos
     bool fits = ck_shape_is_even_chain(model) && model->pin_count == 1 && model->pinned[0] && has_equal_masses(model) &&
                 model->particle_count <= 61 && ck_springs_start_at_rest(model) && g > 0 &&
                 velocity_along(model) < 1e-12 &&
-                !(model->terms & (CK_TERM_FORCE | CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_RELEASE));
+                !(model->terms & (CK_TERM_FORCE | CK_TERM_COLLIDERS | CK_TERM_RELEASE));
     if (fits) {
         ck_subtract(along, model->position + 3, model->position);
         fits = ck_dot(along, model->gravity) > (1 - 1e-12) * ck_length(along) * g;

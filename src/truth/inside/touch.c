@@ -7,15 +7,16 @@
 #include <string.h>
 
 // A particle that turns only begins a step there.
-typedef enum Event { NO_EVENT, IMPACT, LIFT, STOP, SLIP, TURN } Event;
+typedef enum Event { NO_EVENT, IMPACT, LIFT, STOP, SLIP, TURN, BORDER } Event;
 
 // What a particle touches.
 typedef struct Touch {
     int collider;  // −1: nothing
+    ck_Part part;  // of that
     bool sticks;   // held by friction
     double way[3]; // unit: the direction in which it slid at the start of the step; 0: it did not
     Event event;
-    int hit;     // of an impact
+    int hit;     // of an impact the collider, of a border the axis
     double when; // share of the step
 } Touch;
 
@@ -32,15 +33,26 @@ struct ck_Touches {
 // A collider at a time, and where a particle is to it.
 typedef struct Surface {
     ck_Collider collider;
+    ck_Part part; // of one that is touched, which goes on beyond its borders
     double velocity[3], acceleration[3];
     double normal[3], gap;
 } Surface;
 
 static Surface surface_at(const ck_Touches *touches, int collider, double time, int side, const double *point) {
-    Surface surface;
+    Surface surface = {.gap = 0};
     surface.collider =
         ck_collider_at(&touches->model->colliders[collider], time, side, surface.velocity, surface.acceleration);
     surface.gap = ck_collider_gap(&surface.collider, point, surface.normal);
+    return surface;
+}
+
+// That which a particle touches.
+static Surface surface_of(const ck_Touches *touches, const Touch *touch, double time, int side, const double *point) {
+    Surface surface;
+    surface.collider =
+        ck_collider_at(&touches->model->colliders[touch->collider], time, side, surface.velocity, surface.acceleration);
+    surface.part = touch->part;
+    surface.gap = ck_collider_part_gap(&surface.collider, touch->part, point, surface.normal);
     return surface;
 }
 
@@ -83,12 +95,11 @@ void ck_touches_destroy(ck_Touches *touches) {
 // The acceleration along the normal that keeps it on the surface, less what it would have: how hard it is pressed on,
 // per mass. along: its velocity to the surface's, tangential.
 static double pressing(const Surface *surface, const double *velocity, const double *acceleration, double *along) {
-    double relative[3], turn = 0;
+    double relative[3];
     ck_subtract(relative, velocity, surface->velocity);
     ck_tangential(along, relative, surface->normal);
-    // it goes round a ball
-    if (surface->collider.shape == CK_SPHERE) turn = -ck_dot(along, along) / surface->collider.radius;
-    return turn + ck_dot(surface->acceleration, surface->normal) - ck_dot(acceleration, surface->normal);
+    const double turn = ck_collider_turn(&surface->collider, surface->part, along);
+    return -turn + ck_dot(surface->acceleration, surface->normal) - ck_dot(acceleration, surface->normal);
 }
 
 // What pushes a particle along a surface, m/s², and what friction does at most.
@@ -138,7 +149,7 @@ void ck_touches_accelerate(ck_Touches *touches, double time, int side, const dou
         const Touch *touch = &touches->touch[i];
         double along[3], way[3], *a = acceleration + 3 * i;
         if (touch->collider < 0) continue;
-        const Surface surface = surface_at(touches, touch->collider, time, side, position + 3 * i);
+        const Surface surface = surface_of(touches, touch, time, side, position + 3 * i);
         if (touch->sticks) {
             memcpy(a, surface.acceleration, sizeof surface.acceleration);
             continue;
@@ -162,7 +173,7 @@ void ck_touches_start(ck_Touches *touches, double time, double dt, const double 
         Touch *touch = &touches->touch[i];
         memset(touch->way, 0, sizeof touch->way);
         if (touch->collider < 0 || touch->sticks) continue;
-        const Surface surface = surface_at(touches, touch->collider, time, 1, position + 3 * i);
+        const Surface surface = surface_of(touches, touch, time, 1, position + 3 * i);
         double along[3], way[3];
         const Push push = push_of(&surface, velocity + 3 * i, acceleration + 3 * i, along);
         direction(touches, touch, along, &push, way);
@@ -174,15 +185,21 @@ void ck_touches_start(ck_Touches *touches, double time, double dt, const double 
 // slip and stop, without end. By then it has a speed of that squared of what a step's change of its acceleration makes.
 #define LEAST (1.0 / 32)
 
-// The gap to a collider after a share s of the step, by Hermite's cubic between its ends.
-static double gap_at(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
-                     const double *end_velocity, double s) {
+// The place of a particle after a share of the step, by Hermite's cubic between its ends.
+static void point_on(const ck_Touches *touches, int particle, double dt, const double *end, const double *end_velocity,
+                     double s, double *point) {
     const double *x = touches->position + 3 * particle, *v = touches->velocity + 3 * particle;
-    double point[3];
     for (int axis = 0; axis < 3; axis++) {
         const double m = dt * v[axis], n = dt * end_velocity[axis], way = end[axis] - x[axis];
         point[axis] = x[axis] + s * (m + s * (3 * way - 2 * m - n + s * (m + n - 2 * way)));
     }
+}
+
+// The gap to a collider after a share s of the step.
+static double gap_at(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
+                     const double *end_velocity, double s) {
+    double point[3];
+    point_on(touches, particle, dt, end, end_velocity, s, point);
     return surface_at(touches, collider, touches->time + s * dt, 1, point).gap;
 }
 
@@ -256,16 +273,47 @@ static double stop_share(const double *along, const Push *start, const Push *end
     return time / dt;
 }
 
+static double excess_at(const ck_Touches *touches, const Touch *touch, int axis, double time, const double *point) {
+    double velocity[3], acceleration[3];
+    const ck_Collider there =
+        ck_collider_at(&touches->model->colliders[touch->collider], time, 1, velocity, acceleration);
+    return ck_collider_part_excess(&there, axis, point);
+}
+
+// Where a particle goes over the border of the part of the surface that it is on, there curved otherwise.
+static void note_border(ck_Touches *touches, int particle, double dt, const double *position, const double *velocity) {
+    Touch *touch = &touches->touch[particle];
+    const ck_Collider *collider = &touches->model->colliders[touch->collider];
+    const double *x = position + 3 * particle, *v = velocity + 3 * particle;
+    for (int axis = 0; axis < 3 && collider->shape != CK_PLANE && collider->shape != CK_SPHERE; axis++) {
+        const double side = touch->part.beyond[axis] ? -1 : 1;
+        if (!(collider->half[axis] > 0) || !isfinite(collider->half[axis]) ||
+            !(side * excess_at(touches, touch, axis, touches->time + dt, x) > touches->thin))
+            continue;
+        double low = 0, high = 1, point[3];
+        while (high - low > 1e-15) {
+            const double middle = 0.5 * (low + high);
+            point_on(touches, particle, dt, x, v, middle, point);
+            if (side * excess_at(touches, touch, axis, touches->time + middle * dt, point) > 0)
+                high = middle;
+            else
+                low = middle;
+        }
+        note(touch, BORDER, axis, high);
+    }
+}
+
 // The event of a particle that touches already: it lifts, stops or slips.
 static void note_change(ck_Touches *touches, int particle, double dt, const double *position, const double *velocity,
                         const double *acceleration) {
     Touch *touch = &touches->touch[particle];
     const int at = 3 * particle;
-    const Surface start = surface_at(touches, touch->collider, touches->time, 1, touches->position + at);
-    const Surface end = surface_at(touches, touch->collider, touches->time + dt, -1, position + at);
+    const Surface start = surface_of(touches, touch, touches->time, 1, touches->position + at);
+    const Surface end = surface_of(touches, touch, touches->time + dt, -1, position + at);
     double slip[3], left[3];
     const Push before = push_of(&start, touches->velocity + at, touches->acceleration + at, slip);
     const Push after = push_of(&end, velocity + at, acceleration + at, left);
+    note_border(touches, particle, dt, position, velocity);
     if (after.press < 0) note(touch, LIFT, 0, crossing(before.press, after.press));
     if (touch->sticks) {
         if (margin(&after) < 0) note(touch, SLIP, 0, crossing(margin(&before), margin(&after)));
@@ -310,7 +358,7 @@ void ck_touches_project(ck_Touches *touches, double time, double *position, doub
     for (int i = 0; i < touches->model->particle_count; i++) {
         const Touch *touch = &touches->touch[i];
         if (touch->collider < 0) continue;
-        const Surface surface = surface_at(touches, touch->collider, time, -1, position + 3 * i);
+        const Surface surface = surface_of(touches, touch, time, -1, position + 3 * i);
         put(&surface, position + 3 * i, velocity + 3 * i);
         if (touch->sticks) memcpy(velocity + 3 * i, surface.velocity, sizeof surface.velocity);
     }
@@ -330,9 +378,23 @@ static void strike(ck_Touches *touches, int particle, int collider, double time,
     const double sliding = ck_length(along);
     if (speed > 0) ck_add_scaled(v, jump, surface.normal);
     if (sliding > 0) ck_add_scaled(v, -fmin(1, surface.collider.friction * jump / sliding), along);
+    ck_subtract(relative, v, surface.velocity);
+    touch->part = ck_collider_part(&surface.collider, x, relative);
     touch->collider = rests ? collider : -1;
     touch->sticks = false;
     touch->event = rests ? STOP : NO_EVENT;
+}
+
+// Over a border, onto the next part of the surface; off a sharp edge.
+static void turn_over(ck_Touches *touches, Touch *touch, double time, const double *x) {
+    const Surface surface = surface_of(touches, touch, time, 1, x);
+    double from[3];
+    int beyond = 0;
+    ck_subtract(from, x, surface.collider.point);
+    const double local = ck_dot(from, surface.collider.axes[touch->hit]);
+    touch->part.beyond[touch->hit] = touch->part.beyond[touch->hit] ? 0 : local < 0 ? -1 : 1;
+    for (int axis = 0; axis < 3; axis++) beyond += touch->part.beyond[axis] != 0;
+    if (!(surface.collider.radius > 0) && beyond > 1) touch->collider = -1;
 }
 
 bool ck_touches_change(ck_Touches *touches, double time, double *position, double *velocity) {
@@ -344,8 +406,10 @@ bool ck_touches_change(ck_Touches *touches, double time, double *position, doubl
             strike(touches, i, touch->hit, time, x, v);
         } else if (touch->event == LIFT) {
             touch->collider = -1;
+        } else if (touch->event == BORDER) {
+            turn_over(touches, touch, time, x);
         } else if (touch->event == STOP || touch->event == SLIP) {
-            const Surface surface = surface_at(touches, touch->collider, time, 1, x);
+            const Surface surface = surface_of(touches, touch, time, 1, x);
             put(&surface, x, v);
             if (touch->event == STOP) memcpy(v, surface.velocity, sizeof surface.velocity);
             touch->sticks = false;
@@ -359,12 +423,12 @@ void ck_touches_settle(ck_Touches *touches, double time, const double *position,
     for (int i = 0; i < touches->model->particle_count; i++) {
         Touch *touch = &touches->touch[i];
         double along[3], *v = velocity + 3 * i;
-        const bool comes_to_rest = touch->event == STOP;
+        const Event event = touch->event;
         touch->event = NO_EVENT;
-        if (!comes_to_rest) continue;
-        const Surface surface = surface_at(touches, touch->collider, time, 1, position + 3 * i);
+        if ((event != STOP && event != BORDER) || touch->collider < 0) continue;
+        const Surface surface = surface_of(touches, touch, time, 1, position + 3 * i);
         const Push push = push_of(&surface, v, acceleration + 3 * i, along);
-        const bool is_still = ck_length(along) <= 1e-3 * touches->rest;
+        const bool is_still = event == STOP && ck_length(along) <= 1e-3 * touches->rest;
         touch->sticks = push.press > 0 && is_still && push.friction > 0 && margin(&push) >= 0;
         if (!(push.press > 0)) touch->collider = -1;
         if (touch->sticks) memcpy(v, surface.velocity, sizeof surface.velocity);
