@@ -275,7 +275,7 @@ static const ck_Metric metrics[] = {
      .over = ck_metric_restitution_over},
     {"friction", "1", "Coefficient that explains the way slid along a plane", CK_TRUTH_OF_STATE,
      .over = ck_metric_friction_over},
-    {"tunnelled", "1", "Share of particles that have passed through a ball", CK_TRUTH_ZERO,
+    {"tunnelled", "1", "Share of particles that have passed through a ball or another solid", CK_TRUTH_ZERO,
      .over = ck_metric_tunnelled_over},
     {"wrap_friction", "1", "Coefficient that explains how a rope slides over a ball", CK_TRUTH_OF_STATE,
      .over = ck_metric_wrap_friction_over},

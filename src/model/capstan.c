@@ -3,21 +3,21 @@
 #include "vector.h"
 
 #include <math.h>
+#include <string.h>
 
 void ck_capstan_place(const ck_Capstan *capstan, double arc, double *position, double *direction) {
     double half = M_PI * capstan->radius, theta = fmin(M_PI, fmax(0, arc / capstan->radius));
     double below = arc < 0 ? -arc : arc > half ? arc - half : 0;
     for (int axis = 0; axis < 3; axis++) {
         double up = capstan->up[axis], level = capstan->level[axis];
-        position[axis] =
-            capstan->ball->point[axis] + capstan->radius * (sin(theta) * up - cos(theta) * level) - below * up;
+        position[axis] = capstan->center[axis] + capstan->radius * (sin(theta) * up - cos(theta) * level) - below * up;
         direction[axis] = cos(theta) * up + sin(theta) * level;
     }
 }
 
 double ck_capstan_arc(const ck_Capstan *capstan, const ck_Model *model, int particle) {
     double from[3];
-    ck_subtract(from, model->position + 3 * particle, capstan->ball->point);
+    ck_subtract(from, model->position + 3 * particle, capstan->center);
     double up = ck_dot(from, capstan->up), level = ck_dot(from, capstan->level);
     if (up < 0) return level < 0 ? up : M_PI * capstan->radius - up;
     return capstan->radius * atan2(up, -level);
@@ -35,16 +35,31 @@ static bool lies_over(const ck_Capstan *capstan, const ck_Model *model) {
     return true;
 }
 
+static bool is_round(const ck_Collider *collider) {
+    return collider->shape == CK_SPHERE || collider->shape == CK_CYLINDER;
+}
+
+// Of a cylinder in the plane of the rope; false where the rope does not go straight across it.
+static bool set_center(ck_Capstan *capstan, const ck_Model *model) {
+    const ck_Collider *around = &model->colliders[0];
+    const double *axis = around->axes[0];
+    double from[3];
+    memcpy(capstan->center, around->point, sizeof capstan->center);
+    if (around->shape == CK_SPHERE) return true;
+    ck_subtract(from, model->position, around->point);
+    ck_add_scaled(capstan->center, ck_dot(from, axis), axis);
+    return fabs(ck_dot(axis, capstan->up)) < 1e-9 && fabs(ck_dot(axis, capstan->level)) < 1e-9;
+}
+
 bool ck_capstan_read(ck_Capstan *capstan, const ck_Model *model) {
     unsigned without = CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY;
-    bool fits = ck_shape_is_chain(model) && model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE &&
+    bool fits = ck_shape_is_chain(model) && model->collider_count == 1 && is_round(&model->colliders[0]) &&
                 !model->pin_count && (model->terms & CK_TERM_GRAVITY) && !(model->terms & without) &&
                 model->particle_count > 3;
     if (!fits) return false;
     int last = model->particle_count - 1;
     double across[3];
-    *capstan = (ck_Capstan){.ball = &model->colliders[0],
-                            .g = ck_length(model->gravity),
+    *capstan = (ck_Capstan){.g = ck_length(model->gravity),
                             .radius = model->colliders[0].radius,
                             .friction = model->colliders[0].friction,
                             .density = model->mass[1] / model->springs[1].rest};
@@ -53,6 +68,7 @@ bool ck_capstan_read(ck_Capstan *capstan, const ck_Model *model) {
     ck_add_scaled(across, -ck_dot(across, capstan->up), capstan->up);
     if (!(ck_length(across) > 0)) return false;
     ck_add_scaled(capstan->level, 1 / ck_length(across), across);
+    if (!set_center(capstan, model)) return false;
     capstan->hang[0] = -ck_capstan_arc(capstan, model, 0);
     capstan->hang[1] = ck_capstan_arc(capstan, model, last) - M_PI * capstan->radius;
     // half a node's rope belongs to each end's neighbour

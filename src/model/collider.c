@@ -41,7 +41,8 @@ static double face_gap(const ck_Collider *collider, const double *from, double *
     return -least - collider->radius;
 }
 
-static double solid_gap(const ck_Collider *collider, const double *from, double *normal) {
+// Apart, so that planes and balls do not pay for its registers.
+__attribute__((noinline)) static double solid_gap(const ck_Collider *collider, const double *from, double *normal) {
     double out[3] = {from[0], from[1], from[2]};
     for (int k = 0; k < 3; k++) {
         const double local = local_of(collider, k, from);
@@ -198,7 +199,8 @@ static double closest_to_centre(const ck_Collider *collider, const double *start
 }
 
 // The same of any shape: along a chord the distance from what is convex has one minimum. Source: Kiefer 1953.
-static double closest_to_core(const ck_Collider *collider, const double *start, const double *chord) {
+//   enough  m: a gap that is as good as the least
+static double closest_to_core(const ck_Collider *collider, const double *start, const double *chord, double enough) {
     const double golden = 0.61803398874989485;
     double low = 0, high = 1, point[3], normal[3], gap[2], at[2];
     for (int round = 0; round < 40; round++) {
@@ -207,7 +209,7 @@ static double closest_to_core(const ck_Collider *collider, const double *start, 
             memcpy(point, start, sizeof point);
             ck_add_scaled(point, at[i], chord);
             gap[i] = ck_collider_gap(collider, point, normal);
-            if (gap[i] < 0) return at[i];
+            if (gap[i] < enough) return at[i];
         }
         if (gap[0] < gap[1])
             high = at[1];
@@ -217,6 +219,20 @@ static double closest_to_core(const ck_Collider *collider, const double *start, 
     return 0.5 * (low + high);
 }
 
+double ck_collider_least_gap(const ck_Collider *collider, const double *from, const double *to) {
+    double chord[3], point[3], normal[3];
+    ck_subtract(chord, to, from);
+    const double gap = ck_collider_gap(collider, from, normal);
+    // it comes no nearer than it goes
+    if (gap > ck_length(chord)) return gap - ck_length(chord);
+    memcpy(point, from, sizeof point);
+    ck_add_scaled(point,
+                  collider->shape == CK_SPHERE ? closest_to_centre(collider, from, chord)
+                                               : closest_to_core(collider, from, chord, -INFINITY),
+                  chord);
+    return ck_collider_gap(collider, point, normal);
+}
+
 // The time between two at which the chord of the path is nearest, or already inside.
 static double closest_time(const ck_Collider *collider, const Path *path, double from, double to) {
     double start[3], chord[3];
@@ -224,7 +240,7 @@ static double closest_time(const ck_Collider *collider, const Path *path, double
     point_at(chord, path, to);
     ck_subtract(chord, chord, start);
     const double share = collider->shape == CK_SPHERE ? closest_to_centre(collider, start, chord)
-                                                      : closest_to_core(collider, start, chord);
+                                                      : closest_to_core(collider, start, chord, 0);
     return from + share * (to - from);
 }
 
@@ -234,8 +250,7 @@ static double hit_solid(const ck_Collider *collider, const Path *path, double du
     double normal[3], outside = 0;
     const double gap = ck_collider_gap(collider, path->x, normal);
     // nothing comes nearer than it goes
-    if (collider->shape != CK_SPHERE && gap > duration * (ck_length(path->v) + 0.5 * duration * ck_length(path->a)))
-        return INFINITY;
+    if (gap > duration * (ck_length(path->v) + 0.5 * duration * ck_length(path->a))) return INFINITY;
     if (gap <= slack) {
         double v = ck_dot(path->v, normal), a = ck_dot(path->a, normal);
         // it only comes back where it turns within the step

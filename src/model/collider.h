@@ -15,6 +15,9 @@ ck_Collider ck_collider_at(const ck_Collider *collider, double time, int side, d
 // The distance of a point from the surface, in m, negative inside; normal: out, unit, away from the collider.
 double ck_collider_gap(const ck_Collider *collider, const double *point, double *normal);
 
+// The least gap of a solid to the line between two points, m.
+double ck_collider_least_gap(const ck_Collider *collider, const double *from, const double *to);
+
 // Half of how thick a shape is where it is thinnest, m; INFINITY: a half-space.
 double ck_collider_breadth(const ck_Collider *collider);
 

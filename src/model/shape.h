@@ -18,18 +18,19 @@ bool ck_shape_is_even_chain(const ck_Model *model);
 // True without pins and colliders, and with springs that start at rest: nothing but field and drag moves it.
 bool ck_shape_is_falling(const ck_Model *model);
 
-// A rope over a ball: where it lies, and the law by which it slides.
+// A rope over a ball or across a cylinder: where it lies, and the law by which it slides.
 
-// A chain over the upper half of a ball. Angles run from the tangent point of its first side over the top.
+// A chain over the upper half of either. Angles run from the tangent point of its first side over the top.
 typedef struct ck_Capstan {
-    const ck_Collider *ball;
+    double center[3];       // m
     double up[3], level[3]; // unit; level points to the last particle's side
     double g, radius, friction;
     double hang[2], weight[2]; // m of rope below the tangent points and kg at their ends, first side and last
     double density;            // kg/m
 } ck_Capstan;
 
-// False where the model is none: a chain of equal nodes but for its end weights, over the upper half of one ball and
+// False where the model is none: a chain of equal nodes but for its end weights, over the upper half of one ball
+// or across one cylinder, and
 // hanging down on both sides to the end, the last side heavier, in gravity alone.
 bool ck_capstan_read(ck_Capstan *capstan, const ck_Model *model);
 

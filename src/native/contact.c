@@ -135,7 +135,12 @@ static void strike(const ck_Contact *contact, const ck_Collider *collider, const
 // How hard a surface is pressed on, per mass: what bends the path inwards counts as not pressing. ≤ 0: not at all.
 static double pressing(const ck_Collider *collider, const double *normal, const double *x, const double *v,
                        const double *a) {
-    return -ck_dot(a, normal) - ck_collider_turn(collider, ck_collider_part(collider, x, v), v);
+    // planes and balls, which are most, have one part
+    const double turn = collider->shape == CK_PLANE ? 0
+                        : collider->shape == CK_SPHERE
+                            ? ck_dot(v, v) / collider->radius
+                            : ck_collider_turn(collider, ck_collider_part(collider, x, v), v);
+    return -ck_dot(a, normal) - turn;
 }
 
 // One collider's part of ck_contact_filter; false where it is not pressed on.
@@ -257,7 +262,8 @@ static void stop_along(double *v, const double *way) {
 static void slide(const ck_Collider *carrier, double *x, double *v, const double *a, const double *left, double time,
                   Ending ending) {
     double from[3], way[3], slid[3], normal[3], speed_squared = ck_dot(v, v), press;
-    const bool is_flat = ck_collider_is_flat(carrier, ck_collider_part(carrier, x, v));
+    const bool is_flat = carrier->shape == CK_PLANE ||
+                         (carrier->shape == CK_BOX && ck_collider_is_flat(carrier, ck_collider_part(carrier, x, v)));
     memcpy(from, x, sizeof from);
     memcpy(slid, v, sizeof slid);
     ck_collider_gap(carrier, x, normal);

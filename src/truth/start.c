@@ -12,8 +12,7 @@
 static ck_Status settle(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     ck_Model held = *model;
     held.collider_count = held.release_count = held.driven_count = held.path_count = 0;
-    held.terms &=
-        ~(unsigned)(CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS);
+    held.terms &= ~(unsigned)(CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS);
     held.frame_count = MOST_FRAMES;
     ck_Equilibrium equilibrium;
     ck_Error why = {0};

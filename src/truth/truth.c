@@ -22,8 +22,7 @@
 #define CLOSED "closed form"
 // What a form must say that it knows.
 #define EXTRAS                                                                                                         \
-    (CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |             \
-     CK_TERM_MOVING_COLLIDERS)
+    (CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
 
 // Adding a truth is one function and one row here.
 static const ck_TruthForm forms[] = {
@@ -37,9 +36,7 @@ static const ck_TruthForm forms[] = {
      "the same of a scene in contact: impacts, slip and stick located in time, Coulomb friction", false,
      .terms = EXTRAS, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
-     true,
-     .terms = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
-              CK_TERM_MOVING_COLLIDERS,
+     true, .terms = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
      .check = ck_truth_rest_check},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
      .terms = CK_TERM_PULL_ONLY, .at = ck_truth_vertical_chain},
@@ -79,8 +76,8 @@ static const ck_TruthForm forms[] = {
     {"strike", CLOSED, "comes back at e times the speed it came with", false, .terms = CK_TERM_COLLIDERS,
      .at = ck_truth_strike},
     {"capstan", "rope on its arc",
-     "springs and friction of a chain along the arc over a ball; light: T_2 = T_1*e^(mu*pi)", false,
-     .terms = CK_TERM_SPHERE, .off = ck_truth_capstan_off, .check = ck_truth_capstan_check,
+     "springs and friction of a chain along the arc over a ball or across a cylinder; light: T_2 = T_1*e^(mu*pi)",
+     false, .terms = CK_TERM_SPHERE | CK_TERM_SOLIDS, .off = ck_truth_capstan_off, .check = ck_truth_capstan_check,
      .solve = ck_truth_solve_capstan},
 };
 

@@ -199,33 +199,22 @@ double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *traje
     return ((first * first - last * last) / (2 * way) + ck_dot(drive, line)) / press;
 }
 
-// Distance of a point from the line between two others, m.
-static double distance_to_line(const double *point, const double *from, const double *to) {
-    double line[3], at[3];
-    ck_subtract(line, to, from);
-    ck_subtract(at, point, from);
-    double length_squared = ck_dot(line, line);
-    double share = length_squared > 0 ? fmin(1, fmax(0, ck_dot(at, line) / length_squared)) : 0;
-    ck_add_scaled(at, -share, line);
-    return ck_length(at);
-}
-
 double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
-    int balls = 0, passed = 0;
-    for (int j = 0; j < model->collider_count; j++) balls += model->colliders[j].shape == CK_SPHERE;
-    for (int i = 0; i < model->particle_count && balls; i++) {
+    int solids = 0, passed = 0;
+    for (int j = 0; j < model->collider_count; j++) solids += model->colliders[j].shape != CK_PLANE;
+    for (int i = 0; i < model->particle_count && solids; i++) {
         bool through = false;
         for (int frame = 0; frame + 1 < trajectory->frame_count && !through; frame++)
             for (int j = 0; j < model->collider_count; j++)
                 through |=
-                    model->colliders[j].shape == CK_SPHERE &&
-                    distance_to_line(model->colliders[j].point, ck_trajectory_position(trajectory, frame) + 3 * i,
-                                     ck_trajectory_position(trajectory, frame + 1) + 3 * i) <
-                        0.5 * model->colliders[j].radius;
+                    model->colliders[j].shape != CK_PLANE &&
+                    ck_collider_least_gap(&model->colliders[j], ck_trajectory_position(trajectory, frame) + 3 * i,
+                                          ck_trajectory_position(trajectory, frame + 1) + 3 * i) <
+                        -0.5 * ck_collider_breadth(&model->colliders[j]);
         passed += through;
     }
-    return balls ? (double)passed / model->particle_count : NAN;
+    return solids ? (double)passed / model->particle_count : NAN;
 }
 
 // A parabola of least squares through an end's way along the rope, over 2·half + 1 frames: m, m/s and m/s² at the
@@ -260,7 +249,8 @@ double ck_metric_wrap_friction_over(const ck_Model *model, const ck_Trajectory *
     double field[3];
     ck_model_mean_field(model, field);
     int frames = trajectory->frame_count - 1, half = frames / 4;
-    bool over_ball = model->collider_count == 1 && model->colliders[0].shape == CK_SPHERE && !model->pin_count;
+    const ck_ColliderShape shape = model->collider_count == 1 ? model->colliders[0].shape : CK_PLANE;
+    bool over_ball = (shape == CK_SPHERE || shape == CK_CYLINDER) && !model->pin_count;
     if (!over_ball || !ck_shape_is_chain(model) || half < 2 || !(ck_length(field) > 0)) return NAN;
     Slide first = fit_slide(model, trajectory, 0, -1, frames - half, half),
           last = fit_slide(model, trajectory, model->particle_count - 1, 1, frames - half, half);

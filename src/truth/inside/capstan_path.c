@@ -47,7 +47,7 @@ typedef struct Chain {
 static void place_at(const ck_Capstan *capstan, double theta, double *position, double *direction) {
     for (int axis = 0; axis < 3; axis++) {
         double up = capstan->up[axis], level = capstan->level[axis];
-        position[axis] = capstan->ball->point[axis] + capstan->radius * (sin(theta) * up - cos(theta) * level);
+        position[axis] = capstan->center[axis] + capstan->radius * (sin(theta) * up - cos(theta) * level);
         direction[axis] = cos(theta) * up + sin(theta) * level;
     }
 }
@@ -62,7 +62,7 @@ static void place_chain(Chain *chain) {
         int edge = before ? chain->first : chain->last;
         double above = (before ? 1 : -1) * (chain->arc[i] - (before ? 0 : M_PI * capstan->radius));
         double from[3];
-        ck_subtract(from, chain->position + 3 * edge, capstan->ball->point);
+        ck_subtract(from, chain->position + 3 * edge, capstan->center);
         memcpy(chain->position + 3 * i, chain->position + 3 * edge, 3 * sizeof(double));
         ck_add_scaled(chain->position + 3 * i, above - ck_dot(from, capstan->up), capstan->up);
         for (int axis = 0; axis < 3; axis++) chain->direction[3 * i + axis] = (before ? 1 : -1) * capstan->up[axis];
@@ -113,7 +113,7 @@ static void pull(Chain *chain) {
 static double pressing(const Chain *chain, int i) {
     if (i < chain->first || i > chain->last) return 0;
     double out[3], radius = chain->capstan.radius, speed = chain->speed[i];
-    ck_subtract(out, chain->position + 3 * i, chain->capstan.ball->point);
+    ck_subtract(out, chain->position + 3 * i, chain->capstan.center);
     return fmax(0, -ck_dot(out, chain->force + 3 * i) / radius - chain->model->mass[i] * speed * speed / radius);
 }
 
@@ -177,7 +177,7 @@ static void write_frame(Chain *chain, ck_Trajectory *path, int frame, bool is_se
         ck_add_scaled(velocity + 3 * i, chain->speed[i], chain->direction + 3 * i);
         if (!is_settled || (i >= chain->first && i <= chain->last)) continue;
         double from[3], out = capstan->radius * sin(half_spring) / half_spring;
-        ck_subtract(from, position + 3 * i, capstan->ball->point);
+        ck_subtract(from, position + 3 * i, capstan->center);
         ck_add_scaled(position + 3 * i, copysign(out, ck_dot(from, capstan->level)) - ck_dot(from, capstan->level),
                       capstan->level);
     }
