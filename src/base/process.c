@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -12,6 +13,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -59,45 +61,103 @@ size_t ck_process_memory(void) {
 // In the environment of all programs that a child starts, with the child's number.
 #define MARK "CLOTHCHECK_RUN"
 
-static _Noreturn void be_child(void (*work)(void *), void *context, int output, int alive, bool spawns) {
+// A child that has done its work says so by this exit status; one that ends by itself, as by exit(0), has not.
+#define DONE 113
+
+// Beyond the limit that is polled: what the kernel refuses to a child that asks for much at once.
+#define HARD_LIMIT 1.25
+
+// In the kernel, of all that it maps. The sanitizers map most of it, and so do programs of others.
+static void limit_memory(const ck_Limits *limits) {
+#ifndef __SANITIZE_ADDRESS__
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    const bool is_known = file && fscanf(file, "%lu", &pages) == 1;
+    if (file) fclose(file);
+    if (!is_known || !limits->memory_bytes || limits->spawns) return;
+    const rlim_t most = pages * (rlim_t)sysconf(_SC_PAGESIZE) + (rlim_t)(HARD_LIMIT * (double)limits->memory_bytes);
+    setrlimit(RLIMIT_AS, &(struct rlimit){most, most});
+#else
+    (void)limits;
+#endif
+}
+
+static _Noreturn void be_child(void (*work)(void *), void *context, int output, const ck_Limits *limits) {
     char number[20];
     snprintf(number, sizeof number, "%d", (int)getpid());
-    if (spawns) setenv(MARK, number, 1);
+    if (limits->spawns) setenv(MARK, number, 1);
+    setpgid(0, 0);                    // what it starts ends with it
     prctl(PR_SET_PDEATHSIG, SIGKILL); // an interrupted comparison leaves no solver running
     prctl(PR_SET_NAME, "clothcheck-run");
+    // in a group of its own it would be stopped for reading from a terminal
+    const int nothing = open("/dev/null", O_RDONLY);
+    if (nothing >= 0) dup2(nothing, STDIN_FILENO);
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
+    signal(SIGHUP, SIG_DFL);
+    signal(SIGPIPE, SIG_DFL);
     // a crash is a result here, not worth a core file
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+    limit_memory(limits);
     work(context);
     fflush(NULL);
-    close(alive);
-    _exit(0);
+    _exit(DONE);
 }
 
-// Waits until the child closes its end of the pipe, by exit or death, or passes a limit.
-static ck_ChildEnd watch(pid_t child, int alive, const ck_Limits *limits) {
-    double end = now() + limits->seconds;
-    for (;;) {
-        struct pollfd ready = {.fd = alive, .events = POLLIN};
-        if (poll(&ready, 1, 20) > 0) return CK_CHILD_DONE;
-        if (ck_child_interrupted) return CK_CHILD_ABORTED;
-        if (limits->memory_bytes && resident_bytes(child) > limits->memory_bytes) return CK_CHILD_NO_MEMORY;
-        if (now() > end) return CK_CHILD_TIMED_OUT;
+// The end of what a child printed; more is not kept.
+typedef struct Tail {
+    char text[1 << 16];
+    size_t length;
+} Tail;
+
+static void drain(Tail *tail, int output) {
+    char block[8192];
+    for (ssize_t got; (got = read(output, block, sizeof block)) > 0;) {
+        const size_t size = (size_t)got, room = sizeof tail->text - tail->length;
+        if (size > room) {
+            const size_t drop = size - room;
+            memmove(tail->text, tail->text + drop, tail->length - drop);
+            tail->length -= drop;
+        }
+        memcpy(tail->text + tail->length, block, size);
+        tail->length += size;
     }
 }
 
-static void read_last_line(char *line, size_t size, int output) {
-    char text[1024];
-    off_t length = lseek(output, 0, SEEK_END);
-    off_t start = length > (off_t)sizeof text - 1 ? length - (off_t)sizeof text + 1 : 0;
-    ssize_t got = pread(output, text, sizeof text - 1, start);
-    while (got > 0 && (text[got - 1] == '\n' || text[got - 1] == ' ')) got--;
-    text[got > 0 ? got : 0] = 0;
-    char *last = strrchr(text, '\n');
-    snprintf(line, size, "%.*s", (int)size - 1, last ? last + 1 : text);
+static bool has_ended(pid_t child) {
+    siginfo_t info = {0};
+    return !waitid(P_PID, (id_t)child, &info, WEXITED | WNOHANG | WNOWAIT) && info.si_pid == child;
+}
+
+// Waits until the child has ended, whatever it did to its descriptors, or passes a limit.
+static ck_ChildEnd watch(pid_t child, int output, Tail *tail, const ck_Limits *limits) {
+    const double end = now() + limits->seconds;
+    // without such a descriptor its end is looked for more often
+    const int ended = (int)syscall(SYS_pidfd_open, child, 0);
+    ck_ChildEnd result = CK_CHILD_DONE;
+    for (bool is_open = true;;) {
+        struct pollfd ready[2] = {{.fd = is_open ? output : -1, .events = POLLIN}, {.fd = ended, .events = POLLIN}};
+        poll(ready, 2, ended < 0 ? 2 : 20);
+        if (ready[0].revents) drain(tail, output);
+        // once all have closed it, it is ready for ever
+        if (ready[0].revents & POLLHUP) is_open = false;
+        if (has_ended(child)) break;
+        if (ck_child_interrupted) result = CK_CHILD_ABORTED;
+        if (limits->memory_bytes && resident_bytes(child) > limits->memory_bytes) result = CK_CHILD_NO_MEMORY;
+        if (now() > end) result = CK_CHILD_TIMED_OUT;
+        if (result != CK_CHILD_DONE) break;
+    }
+    if (ended >= 0) close(ended);
+    return result;
+}
+
+static void last_line(char *line, size_t size, Tail *tail) {
+    while (tail->length && strchr("\n ", tail->text[tail->length - 1])) tail->length--;
+    size_t start = tail->length;
+    while (start && tail->text[start - 1] != '\n') start--;
+    snprintf(line, size, "%.*s", (int)(tail->length - start), tail->text + start);
 }
 
 // True where a process was started with the mark of a child.
@@ -129,11 +189,17 @@ static void end_strays(pid_t child) {
     }
 }
 
-static void describe(ck_ChildResult *result, int status, const ck_Limits *limits, int output) {
-    if (result->end == CK_CHILD_DONE && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+// How near the limit a child that crashed was when that is taken for a lack of memory.
+#define NEAR_LIMIT 0.8
+
+static void describe(ck_ChildResult *result, int status, const ck_Limits *limits, Tail *tail) {
+    if (result->end == CK_CHILD_DONE && WIFEXITED(status) && WEXITSTATUS(status) == DONE) return;
     char line[120];
-    read_last_line(line, sizeof line, output);
+    last_line(line, sizeof line, tail);
     const char *colon = *line ? ": " : "";
+    const bool is_near = limits->memory_bytes && !limits->spawns &&
+                         (double)result->peak_rss_bytes > NEAR_LIMIT * (double)limits->memory_bytes;
+    if (result->end == CK_CHILD_DONE && WIFSIGNALED(status) && is_near) result->end = CK_CHILD_NO_MEMORY;
     if (result->end == CK_CHILD_TIMED_OUT)
         snprintf(result->reason, sizeof result->reason, "still running after the limit of %g s", limits->seconds);
     else if (result->end == CK_CHILD_NO_MEMORY)
@@ -143,49 +209,61 @@ static void describe(ck_ChildResult *result, int status, const ck_Limits *limits
         snprintf(result->reason, sizeof result->reason, "signal %d, %s%s%s", WTERMSIG(status),
                  strsignal(WTERMSIG(status)), colon, line);
     else
-        snprintf(result->reason, sizeof result->reason, "exit status %d%s%s", WEXITSTATUS(status), colon, line);
+        snprintf(result->reason, sizeof result->reason, "exit status %d%s%s%s", WEXITSTATUS(status),
+                 WEXITSTATUS(status) ? "" : " before its end", colon, line);
     if (result->end == CK_CHILD_DONE) result->end = CK_CHILD_ABORTED;
 }
 
-// A child must not inherit the writing end of another one's pipe, whose end would then not be seen.
+// Another child that is forked meanwhile would hold the writing end of this one's pipe.
 static pthread_mutex_t starting = PTHREAD_MUTEX_INITIALIZER;
+
+// The child's number; below 0: none, and errno says why.
+static pid_t start(void (*work)(void *), void *context, const ck_Limits *limits, int *output) {
+    int ends[2];
+    pthread_mutex_lock(&starting);
+    pid_t child = -1;
+    if (!pipe2(ends, O_NONBLOCK | O_CLOEXEC)) {
+        fcntl(ends[1], F_SETFL, 0); // the child waits until what it prints is read
+        // else what is buffered here would be printed twice
+        fflush(NULL);
+        child = fork();
+        if (child == 0) be_child(work, context, ends[1], limits);
+        const int why = errno;
+        if (child > 0) setpgid(child, child);
+        close(ends[1]);
+        if (child < 0) close(ends[0]);
+        *output = ends[0];
+        errno = why;
+    }
+    pthread_mutex_unlock(&starting);
+    return child;
+}
 
 ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *context, const ck_Limits *limits,
                        ck_Error *error) {
     *result = (ck_ChildResult){0};
-    int output = memfd_create("output", MFD_CLOEXEC), alive[2] = {-1, -1};
-    ck_Status status = CK_OK;
-    pthread_mutex_lock(&starting);
-    if (output < 0 || pipe(alive)) {
-        status = ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
-        pthread_mutex_unlock(&starting);
-        goto cleanup;
-    }
-    // else what is buffered here would be printed twice
-    fflush(NULL);
-    pid_t child = fork();
-    if (child == 0) be_child(work, context, output, alive[1], limits->spawns);
-    close(alive[1]);
-    alive[1] = -1;
-    pthread_mutex_unlock(&starting);
-    if (child < 0) {
-        status = ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
-        goto cleanup;
-    }
-    result->end = watch(child, alive[0], limits);
-    if (result->end != CK_CHILD_DONE) kill(child, SIGKILL);
-    int wait_status = 0;
+    Tail *tail = malloc(sizeof *tail);
+    if (!tail) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    tail->length = 0;
+    int output = -1, wait_status = 0;
     struct rusage usage = {0};
+    const pid_t child = start(work, context, limits, &output);
+    if (child < 0) {
+        free(tail);
+        return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+    }
+    result->end = watch(child, output, tail, limits);
+    // it is no longer waited for where it is stopped, and its group is its own as long as it is not waited for
+    kill(-child, SIGKILL);
+    kill(child, SIGKILL);
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
+    drain(tail, output);
+    close(output);
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
     if (limits->spawns) end_strays(child);
-    describe(result, wait_status, limits, output);
-    if (!status) status = ck_child_check(error);
-cleanup:
-    if (output >= 0) close(output);
-    if (alive[0] >= 0) close(alive[0]);
-    if (alive[1] >= 0) close(alive[1]);
-    return status;
+    describe(result, wait_status, limits, tail);
+    free(tail);
+    return ck_child_check(error);
 }
 
 typedef struct Crew {

@@ -34,9 +34,11 @@ extern volatile sig_atomic_t ck_child_interrupted;
 // CK_IO with its message once a signal has come, else CK_OK: for long work in the parent.
 ck_Status ck_child_check(ck_Error *error);
 
-// Forks, runs work(context) in the child and waits for it. What the child prints does not reach the caller's streams.
-// Results travel through memory that context shares with the child.
-// Errors: CK_IO when no process can be started. How the child ended is a result, not an error.
+// Forks, runs work(context) in the child and waits for it, with what it starts, whatever either does to its
+// descriptors. What the child prints does not reach the caller's streams; its end is kept. A child that ends before
+// work has returned is aborted, whatever its exit status. Memory is limited by its resident size, and a quarter above
+// that in the kernel. Results travel through memory that context shares with the child. Errors: CK_IO when no process
+// can be started. How the child ended is a result, not an error.
 ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *context), void *context, const ck_Limits *limits,
                        ck_Error *error);
 

@@ -6,6 +6,7 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 static const char *version(void) {
     return "test";
@@ -57,6 +58,55 @@ static ck_StepResult step_eat(void *state) {
 static ck_StepResult step_exit(void *state) {
     (void)state;
     _Exit(7);
+}
+
+static ck_StepResult step_leave(void *state) {
+    (void)state;
+    exit(0);
+}
+
+static ck_Status create_leave(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                              ck_Ledger *ledger, ck_Error *error) {
+    (void)state, (void)model, (void)wanted, (void)used, (void)ledger, (void)error;
+    exit(0);
+}
+
+static ck_StepResult step_close_and_hang(void *state) {
+    for (int i = 0; i < 100; i++) close(i);
+    return step_for_ever(state);
+}
+
+// as much as it can, for as long as it may
+static ck_StepResult step_shout(void *state) {
+    (void)state;
+    for (;;) puts("a line that nobody asked for, and that says less the more often it is said");
+    return CK_STEP_OK;
+}
+
+#ifndef __SANITIZE_ADDRESS__
+// at once, and gone before anybody looks
+static ck_StepResult step_gulp(void *state) {
+    (void)state;
+    const size_t much = (size_t)2 << 30;
+    char *memory = malloc(much);
+    if (!memory) return CK_STEP_NO_MEMORY;
+    for (size_t i = 0; i < much; i += 4096) memory[i] = 1;
+    free(memory);
+    return CK_STEP_OK;
+}
+#endif
+
+// A process of its own that holds what it was given, left behind.
+static pid_t *left_behind;
+
+static ck_StepResult step_fork_and_abort(void *state) {
+    (void)state;
+    pid_t child = fork();
+    if (!child)
+        for (;;) pause();
+    *left_behind = child;
+    raise(SIGABRT);
+    return CK_STEP_OK;
 }
 
 static ck_StepResult step_fine(void *state) {
@@ -117,6 +167,15 @@ static const ck_Engine engines[] = {
      .read = read_state,
      .destroy = destroy},
     ENGINE("fine", create, step_fine),
+    ENGINE("leaves", create, step_leave),
+    ENGINE("leaves at once", create_leave, step_fine),
+    ENGINE("closes", create, step_close_and_hang),
+    ENGINE("shouts", create, step_shout),
+    ENGINE("forks", create, step_fork_and_abort),
+#ifndef __SANITIZE_ADDRESS__
+    // what the kernel refuses; the sanitizer maps more than any limit
+    ENGINE("gulps", create, step_gulp),
+#endif
 };
 
 static const struct {
@@ -131,11 +190,30 @@ static const struct {
     {CK_RUN_REFUSED, "too large for me"},
     {CK_RUN_UNSUPPORTED, "simple does not model springs, gravity"},
     {CK_RUN_OK, "ran to t = 0.2 s"},
+    {CK_RUN_ABORTED, "exit status 0 before its end, at t = 0 s"},
+    {CK_RUN_ABORTED, "exit status 0 before its end, at t = 0 s"},
+    {CK_RUN_TIMED_OUT, "still running after the limit of 1.5 s"},
+    {CK_RUN_TIMED_OUT, "still running after the limit of 1.5 s"},
+    {CK_RUN_ABORTED, "signal 6, Aborted, at t = 0 s"},
+    {CK_RUN_OUT_OF_MEMORY, ""},
 };
 
 static const char scene[] =
     "name: prey\nrope: {particles: 3, spacing: 0.1, mass: 1}\nsprings: {stiffness: 100}\npins: [first]\n"
     "gravity: [0, -9.81, 0]\ntime: {duration: 0.2, step: 0.1}\n";
+
+// True once a process runs no more, which dies when the kernel gets to it; nobody need have waited for it.
+static bool is_gone(pid_t process) {
+    char path[40], state = 'Z';
+    snprintf(path, sizeof path, "/proc/%d/stat", (int)process);
+    for (double start = ck_wall(); ck_wall() < start + 5;) {
+        FILE *file = fopen(path, "r");
+        if (file && fscanf(file, "%*d (%*[^)]) %c", &state) != 1) state = 'Z';
+        if (file) fclose(file);
+        if (!file || state == 'Z') return true;
+    }
+    return false;
+}
 
 static void test_hostile_engines(void **state) {
     (void)state;
@@ -150,6 +228,7 @@ static void test_hostile_engines(void **state) {
     options.engine_count = count;
     options.repeats = 5;
     options.limits = (ck_Limits){.seconds = 1.5, .memory_bytes = (size_t)250 << 20};
+    left_behind = ck_shared_allocate(sizeof *left_behind);
     ck_Error error = {0};
     assert_int_equal(ck_comparison_run(&comparison, &options, &error), CK_OK);
     assert_int_equal(comparison.run_count, count);
@@ -159,6 +238,8 @@ static void test_hostile_engines(void **state) {
             fail_msg("%s: %s, %s", run->engine->name, ck_run_status_names[run->status], run->reason);
         assert_int_equal(run->timing.repeat_count, run->status == CK_RUN_OK ? 5 : 0);
     }
+    assert_true(*left_behind > 0 && is_gone(*left_behind));
+    ck_shared_free(left_behind, sizeof *left_behind);
     const ck_Run *last = &comparison.runs[count - 1];
     assert_int_equal(last->status, CK_RUN_OK);
     assert_int_equal(last->timing.repeat_count, 5);

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 // Changes whenever a truth of the same model would come out different, or the layout does.
-#define FORMAT "clothcheck truth 2\n\0\0\0\0"
+#define FORMAT "clothcheck truth 3\n\0\0\0\0"
 
 typedef struct Header {
     char format[24];
@@ -61,6 +61,8 @@ uint64_t ck_truth_cache_hash(const ck_Model *model) {
         value = ck_hash(value, numbers, sizeof numbers);
         value = ck_hash(value, collider->point, sizeof collider->point);
         value = ck_hash(value, collider->normal, sizeof collider->normal);
+        value = ck_hash(value, collider->axes, sizeof collider->axes);
+        value = ck_hash(value, collider->half, sizeof collider->half);
         if (collider->path) value = hash_path(value, collider->path);
     }
     for (int i = 0; i < model->release_count; i++) {
