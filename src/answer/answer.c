@@ -1,5 +1,7 @@
 #include "answer.h"
 
+#include "names.h"
+
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
@@ -20,14 +22,12 @@ static const LineForm lines[CK_ANSWER_LINES] = {
     [CK_ANSWER_NEXT] = {"next", "Next: ", "\nNext: `", "`\n"},
 };
 
-// Reasons quote what others printed: bytes that are no UTF-8, which JSON cannot hold, become question marks.
+// JSON holds UTF-8 alone.
 static json_t *string_of(const char *text) {
-    json_t *string = json_string(text);
-    char *plain = string ? NULL : strdup(text);
-    if (!plain) return string;
-    for (char *byte = plain; *byte; byte++)
-        if ((unsigned char)*byte >= 0x80) *byte = '?';
-    string = json_string(plain);
+    char *plain = strdup(text);
+    if (!plain) return NULL;
+    ck_text_plain(plain);
+    json_t *string = json_string(plain);
     free(plain);
     return string;
 }

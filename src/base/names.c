@@ -57,3 +57,25 @@ const char *ck_name_list(char *out, size_t size, ck_NameAt name_at, const void *
         used += (size_t)snprintf(out + used, size - used, "%s%s", i ? ", " : "", name);
     return out;
 }
+
+// How long a character of UTF-8 is that begins there; 0: none does.
+static int character_length(const unsigned char *at) {
+    const int length = at[0] < 0x80                    ? 1
+                       : at[0] >= 0xc2 && at[0] < 0xe0 ? 2
+                       : (at[0] & 0xf0) == 0xe0        ? 3
+                       : at[0] >= 0xf0 && at[0] < 0xf5 ? 4
+                                                       : 0;
+    for (int i = 1; i < length; i++)
+        if ((at[i] & 0xc0) != 0x80) return 0;
+    // too long for what it says, a half of a pair, or beyond the last
+    const bool is_none = (at[0] == 0xe0 && at[1] < 0xa0) || (at[0] == 0xed && at[1] >= 0xa0) ||
+                         (at[0] == 0xf0 && at[1] < 0x90) || (at[0] == 0xf4 && at[1] >= 0x90);
+    return is_none ? 0 : length;
+}
+
+void ck_text_plain(char *text) {
+    unsigned char *bytes = (unsigned char *)text;
+    for (int length; *bytes && (length = character_length(bytes)); bytes += length) continue;
+    for (bool is_broken = *bytes; is_broken && *text; text++)
+        if ((unsigned char)*text >= 0x80) *text = '?';
+}

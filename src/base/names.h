@@ -20,4 +20,8 @@ const char *ck_name_hint(char *out, size_t size, const char *typed, ck_NameAt na
 // Writes all names, with commas between them. Returns out.
 const char *ck_name_list(char *out, size_t size, ck_NameAt name_at, const void *table);
 
+// Texts of others, as reasons quote them: where one is no UTF-8, its bytes beyond ASCII become question marks.
+// Source: RFC 3629.
+void ck_text_plain(char *text);
+
 #endif

@@ -98,6 +98,7 @@ static _Noreturn void be_child(void (*work)(void *), void *context, int output, 
     signal(SIGTERM, SIG_DFL);
     signal(SIGHUP, SIG_DFL);
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_DFL);
     // a crash is a result here, not worth a core file
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
     limit_memory(limits);

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -106,8 +107,12 @@ static int run(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     open_streams();
+    // a reader that is gone, as head is, and a file that may not grow fail the write, not the work
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
     int result = run(argc, argv);
-    if (!fflush(stdout) && !ferror(stdout)) return result;
+    // what has failed has said so
+    if ((!fflush(stdout) && !ferror(stdout)) || result) return result;
     fprintf(stderr, "clothcheck: what was printed did not reach its file: %s\n", strerror(errno));
-    return result ? result : CK_EXIT_FAILED;
+    return CK_EXIT_FAILED;
 }

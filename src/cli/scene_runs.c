@@ -29,6 +29,7 @@ int ck_command_end(ck_Arguments *arguments, ck_Status status, ck_Error *error) {
 void ck_command_catch_signals(void) {
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
+    signal(SIGHUP, interrupt);
 }
 
 // How far a comparison of several scenes has come, for its line on the terminal.

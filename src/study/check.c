@@ -2,9 +2,9 @@
 
 #include "csv_reader.h"
 #include "files.h"
+#include "names.h"
 #include "statistics.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,6 +59,12 @@ ck_Status ck_baseline_read(ck_Baseline *baseline, const char *path, ck_Error *er
         snprintf(row->metric, sizeof row->metric, "%s", ck_csv_table_text(&table, i, 3));
         row->value = ck_csv_table_number(&table, i, 4);
         row->band = ck_csv_table_number(&table, i, 5);
+        // a row without a metric is for its status alone
+        if (*row->metric && !(isfinite(row->band) && row->band >= 0))
+            status = ck_fail(error, CK_BAD_INPUT,
+                             "%s: row %d, %s of %s on %s: the band is %g; it must be a number that is not negative; "
+                             "'clothcheck check --update' writes it",
+                             path, i + 2, row->metric, row->engine, row->scene, row->band);
     }
     ck_csv_table_free(&table);
     return status;
@@ -167,9 +173,9 @@ int ck_check_compare(const ck_Check *check, int index, const ck_JournalRow *row,
             if (!strcmp(ck_metric_at(k)->name, was->metric)) value = row->values[value_at(k)];
         if (strcmp(was->status, status) || isnan(value) != isnan(was->value))
             excess = INFINITY;
-        else if (!isnan(value))
+        else if (!isnan(value) && value != was->value)
             excess = fabs(value - was->value) / allowed;
-        if (excess > 1) deviations[count++] = (ck_Deviation){was, value, status, allowed, excess};
+        if (!(excess <= 1)) deviations[count++] = (ck_Deviation){was, value, status, allowed, excess};
     }
     qsort(deviations, (size_t)count, sizeof *deviations, compare_deviations);
     return count;
@@ -228,12 +234,15 @@ ck_Status ck_check_remember(const char *directory, const ck_Check *check, const 
 
 // Text between XML tags and in attributes.
 static void write_escaped(FILE *file, const char *text) {
-    for (; *text; text++) switch (*text) {
+    char plain[1024];
+    snprintf(plain, sizeof plain, "%s", text);
+    ck_text_plain(plain);
+    for (const char *letter = plain; *letter; letter++) switch (*letter) {
         case '<': fputs("&lt;", file); break;
         case '>': fputs("&gt;", file); break;
         case '&': fputs("&amp;", file); break;
         case '"': fputs("&quot;", file); break;
-        default: fputc((unsigned char)*text < 0x20 ? ' ' : *text, file);
+        default: fputc((unsigned char)*letter < 0x20 || *letter == 0x7f ? ' ' : *letter, file);
         }
 }
 
@@ -246,23 +255,29 @@ static void write_case(FILE *file, const ck_CheckCase *one, const ck_JournalRow 
     fprintf(file, "\"%s", count ? ">\n" : "/>\n");
     if (!count) return;
     fprintf(file, "    <failure message=\"%d deviations from the baseline\">", count);
-    for (int i = 0; i < count; i++)
-        fprintf(file, "%s: %.9g, was %.9g within %.3g, status %s, was %s\n", deviations[i].row->metric,
-                deviations[i].value, deviations[i].row->value, deviations[i].allowed, deviations[i].status,
-                deviations[i].row->status);
+    for (int i = 0; i < count; i++) {
+        write_escaped(file, deviations[i].row->metric);
+        fprintf(file, ": %.9g, was %.9g within %.3g, status %s, was ", deviations[i].value, deviations[i].row->value,
+                deviations[i].allowed, deviations[i].status);
+        write_escaped(file, deviations[i].row->status);
+        fprintf(file, "\n");
+    }
     write_escaped(file, row->reason);
     fprintf(file, "</failure>\n  </testcase>\n");
 }
 
-ck_Status ck_check_write_junit(const char *path, const ck_Check *check, const ck_JournalRow *rows,
+ck_Status ck_check_write_junit(const char *directory, const ck_Check *check, const ck_JournalRow *rows,
                                const ck_Baseline *baseline, ck_Error *error) {
     ck_Deviation *deviations = calloc((size_t)baseline->count + 1, sizeof *deviations);
-    FILE *file = fopen(path, "w");
-    if (!deviations || !file) {
+    ck_WholeFile whole = {0};
+    ck_Status status = deviations ? ck_whole_file_open(&whole, directory, "check.xml", error)
+                                  : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (status) {
+        ck_whole_file_discard(&whole);
         free(deviations);
-        if (file) fclose(file);
-        return ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
+        return status;
     }
+    FILE *file = whole.file;
     int failed = 0;
     for (int i = 0; i < check->case_count; i++)
         failed += ck_check_compare(check, i, &rows[i], baseline, deviations) > 0;
@@ -276,7 +291,5 @@ ck_Status ck_check_write_junit(const char *path, const ck_Check *check, const ck
     }
     fprintf(file, "</testsuite>\n");
     free(deviations);
-    bool is_bad = ferror(file);
-    if (fclose(file) || is_bad) return ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
-    return CK_OK;
+    return ck_whole_file_close(&whole, error);
 }

@@ -76,8 +76,9 @@ bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seco
 // CK_IO, CK_NO_MEMORY.
 ck_Status ck_check_remember(const char *directory, const ck_Check *check, const ck_JournalRow *rows, ck_Error *error);
 
-// Writes all cases and their deviations as JUnit XML. Errors: CK_IO.
-ck_Status ck_check_write_junit(const char *path, const ck_Check *check, const ck_JournalRow *rows,
+// Writes all cases and their deviations to directory/check.xml, as JUnit XML, whole or not at all. Errors: CK_IO,
+// CK_NO_MEMORY.
+ck_Status ck_check_write_junit(const char *directory, const ck_Check *check, const ck_JournalRow *rows,
                                const ck_Baseline *baseline, ck_Error *error);
 
 #endif

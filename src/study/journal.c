@@ -23,6 +23,7 @@ typedef struct Reader {
     ck_ValueName name_at;
     int columns[3 + CK_JOURNAL_VALUES]; // of the file: where in values each goes, −1: nowhere
     int row_index, field;
+    bool is_sound;      // all of the row so far is what a row holds
     const char *wanted; // the question; rows of another one are not kept
     void (*kept)(void *context, const char *key, const ck_JournalRow *row);
     void *context;
@@ -60,9 +61,17 @@ static void take_field(void *text, size_t length, void *context) {
     if (field == 2) snprintf(reader->row.reason, sizeof reader->row.reason, "%.*s", (int)length, (char *)text);
     if (field == 0 || field == 2) return;
     snprintf(number, sizeof number, "%.*s", (int)length, (char *)text);
-    if (field == 1) reader->row.status = atoi(number);
-    if (field >= 3 && field < 3 + CK_JOURNAL_VALUES && reader->columns[field] >= 0)
-        reader->row.values[reader->columns[field]] = length ? strtod(number, NULL) : NAN;
+    char *end = number;
+    if (field == 1) {
+        const long status = strtol(number, &end, 10);
+        reader->row.status = (int)status;
+        reader->is_sound &= end != number && !*end && status >= 0 && status < CK_RUN_STATUS_COUNT;
+    }
+    if (field >= 3 && field < 3 + CK_JOURNAL_VALUES && reader->columns[field] >= 0) {
+        const double value = length ? strtod(number, &end) : NAN;
+        reader->row.values[reader->columns[field]] = value;
+        reader->is_sound &= !length || (end != number && !*end);
+    }
 }
 
 static size_t counting_length(const char *question) {
@@ -78,13 +87,15 @@ bool ck_journal_is_same(const char *question, const char *other) {
 static void end_row(int end, void *context) {
     (void)end;
     Reader *reader = context;
-    bool is_whole = reader->field == 3 + count_values(reader->name_at),
+    // one that is not is run again
+    bool is_whole = reader->is_sound && reader->field == 3 + count_values(reader->name_at),
          is_asked = ck_journal_is_same(reader->question, reader->wanted);
     reader->row.is_done = true;
     if (reader->row_index > 1 && is_whole && is_asked && reader->kept)
         reader->kept(reader->context, reader->key, &reader->row);
     reader->row_index++;
     reader->field = 0;
+    reader->is_sound = true;
 }
 
 // The whole lines of a file; what follows the last newline is cut off the file. NULL without memory.

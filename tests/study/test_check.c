@@ -87,7 +87,69 @@ static void test_empty_baseline(void **state) {
     rmdir(directory);
 }
 
+// So would a band that is none.
+static void test_bands(void **state) {
+    (void)state;
+    static const double bands[] = {NAN, -1e-9, INFINITY};
+    for (int i = 0; i < 3; i++) {
+        char directory[] = "/tmp/clothcheck-check-XXXXXX", path[100];
+        ck_Csv csv;
+        ck_Baseline baseline;
+        ck_Error error = {0};
+        const ck_BaselineRow row = {"rope_hanging", "native-verlet", "ok", "sag", 12345, bands[i]};
+        assert_non_null(mkdtemp(directory));
+        assert_int_equal(ck_csv_open(&csv, directory, &ck_layouts[CK_BASELINE], NULL), CK_OK);
+        ck_baseline_add(&row, &csv);
+        assert_int_equal(ck_csv_close(&csv, NULL), CK_OK);
+        snprintf(path, sizeof path, "%s/metrics.csv", directory);
+        assert_int_equal(ck_baseline_read(&baseline, path, &error), CK_BAD_INPUT);
+        assert_non_null(strstr(error.message, "row 2, sag of native-verlet on rope_hanging: the band is"));
+        ck_baseline_free(&baseline);
+        unlink(path);
+        rmdir(directory);
+    }
+}
+
+// Whatever a solver says and a baseline is called, the XML is XML; a link in its place is replaced, not followed.
+static void test_junit(void **state) {
+    (void)state;
+    char directory[] = "/tmp/clothcheck-check-XXXXXX", path[100], aim[100], text[2000];
+    ck_Comparison comparison;
+    assert_int_equal(ck_comparison_load(&comparison, SCENE_DIRECTORY "/rope_hanging.yaml", NULL), CK_OK);
+    ck_CheckCase one = {&comparison, ck_engine_find("native-verlet")};
+    ck_BaselineRow was = {"rope_hanging", "native-verlet", "<ok>", "a&b", 1, 0.1};
+    const ck_Check check = {.cases = &one, .case_count = 1};
+    const ck_Baseline baseline = {.rows = &was, .count = 1};
+    ck_JournalRow row = {.reason = "caf\xe9 <script> \"said\" \x1b[31m"};
+    for (int i = 0; i < CK_JOURNAL_VALUES; i++) row.values[i] = NAN;
+    assert_non_null(mkdtemp(directory));
+    snprintf(path, sizeof path, "%s/check.xml", directory);
+    snprintf(aim, sizeof aim, "%s/aim", directory);
+    FILE *file = fopen(aim, "w");
+    assert_non_null(file);
+    fputs("mine", file);
+    fclose(file);
+    assert_int_equal(symlink(aim, path), 0);
+    assert_int_equal(ck_check_write_junit(directory, &check, &row, &baseline, NULL), CK_OK);
+    file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    if (!strstr(text, "a&amp;b: nan, was 1 within 0.1, status ok, was &lt;ok&gt;\n"
+                      "caf? &lt;script&gt; &quot;said&quot;  [31m</failure>"))
+        fail_msg("%s", text);
+    file = fopen(aim, "r");
+    assert_non_null(fgets(text, sizeof text, file));
+    fclose(file);
+    assert_string_equal(text, "mine");
+    unlink(path);
+    unlink(aim);
+    rmdir(directory);
+    ck_comparison_free(&comparison);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fault), cmocka_unit_test(test_empty_baseline)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fault), cmocka_unit_test(test_empty_baseline),
+                                       cmocka_unit_test(test_bands), cmocka_unit_test(test_junit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
