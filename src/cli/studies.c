@@ -20,7 +20,8 @@ static void write_question(ck_StudyCommand *command) {
 static ck_Status find_truth(ck_Comparison *comparison, const ck_Arguments *arguments, ck_Error *error) {
     char *cache = ck_path_join(arguments->out, "truths");
     if (!cache) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, cache, error);
+    ck_Status status =
+        ck_truth_create(&comparison->truth, &comparison->model, cache, &arguments->options.limits, error);
     free(cache);
     return status;
 }

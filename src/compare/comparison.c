@@ -71,10 +71,10 @@ static void report(const ck_CompareOptions *options, const ck_Comparison *compar
 }
 
 // Finds which rest a run came to, and adds it to the run's reason where it is another than the truth's.
-static ck_Status tell_fold(ck_Comparison *comparison, int index, ck_Error *error) {
+static ck_Status tell_fold(ck_Comparison *comparison, int index, const ck_Limits *limits, ck_Error *error) {
     ck_Run *run = &comparison->runs[index];
     ck_Fold *fold = &comparison->folds[index];
-    ck_Status status = ck_fold_find(fold, run, &comparison->truth, error);
+    ck_Status status = ck_fold_find(fold, run, &comparison->truth, limits, error);
     if (status || !ck_fold_is_another(fold, &comparison->truth, &comparison->model)) return status;
     size_t used = strlen(run->reason);
     snprintf(
@@ -103,8 +103,8 @@ static ck_Status measure_one(void *context, int index, ck_Error *error) {
                                       &wanted, &options->limits, error);
     if (status || !ck_run_has_all_frames(run)) return status;
     status = ck_prediction_create(&comparison->predictions[i], &comparison->model, run->engine, &run->used,
-                                  &comparison->truth, error);
-    if (!status) status = tell_fold(comparison, i, error);
+                                  &comparison->truth, &options->limits, error);
+    if (!status) status = tell_fold(comparison, i, &options->limits, error);
     report(options, comparison, i, "restarting");
     if (!status && options->consistency_budget > 0)
         status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget, &options->limits,
@@ -156,7 +156,7 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
     if (!comparison->runs || !comparison->predictions || !comparison->consistency || !comparison->folds)
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (options->progress) options->progress(comparison->model.name, "truth", "finding");
-    ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, error);
+    ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, &options->limits, error);
     if (!status) status = measure_all(comparison, options, error);
     if (!status) status = time_all(comparison, options, error);
     return status;

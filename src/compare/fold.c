@@ -20,20 +20,38 @@ static bool has_rest(const ck_Run *run, const ck_Truth *truth) {
            model->particle_count <= MOST_PARTICLES;
 }
 
-ck_Status ck_fold_find(ck_Fold *fold, const ck_Run *run, const ck_Truth *truth, ck_Error *error) {
+// In memory that a child shares.
+typedef struct Search {
+    const ck_Run *run;
+    const ck_Truth *truth;
+    ck_Fold *fold;
+} Search;
+
+static void find(void *context) {
+    const Search *search = context;
+    const ck_Model *model = search->run->model;
+    const double *end = ck_trajectory_position(&search->run->trajectory, model->frame_count);
+    const double *right = ck_trajectory_position(&search->truth->reference.trajectory, 0);
+    ck_Equilibrium own = {0};
+    if (!ck_equilibrium_solve(&own, model, end, NULL))
+        *search->fold = (ck_Fold){rms_distance(model, end, own.position), rms_distance(model, own.position, right),
+                                  own.energy - ck_equilibrium_energy(model, right)};
+    ck_equilibrium_free(&own);
+}
+
+ck_Status ck_fold_find(ck_Fold *fold, const ck_Run *run, const ck_Truth *truth, const ck_Limits *limits,
+                       ck_Error *error) {
+    ck_ChildResult child;
     *fold = (ck_Fold){NAN, NAN, NAN};
     if (!has_rest(run, truth)) return CK_OK;
-    const ck_Model *model = run->model;
-    const double *end = ck_trajectory_position(&run->trajectory, model->frame_count);
-    const double *right = ck_trajectory_position(&truth->reference.trajectory, 0);
-    ck_Equilibrium own = {0};
-    ck_Error why = {0};
-    ck_Status status = ck_equilibrium_solve(&own, model, end, &why);
-    if (!status)
-        *fold = (ck_Fold){rms_distance(model, end, own.position), rms_distance(model, own.position, right),
-                          own.energy - ck_equilibrium_energy(model, right)};
-    ck_equilibrium_free(&own);
-    return status == CK_NO_MEMORY ? ck_fail(error, status, "%s", why.message) : CK_OK;
+    ck_Fold *found = ck_shared_allocate(sizeof *found);
+    if (!found) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *found = *fold;
+    // what is not found within the limits is not known
+    ck_Status status = ck_child_run(&child, find, &(Search){run, truth, found}, limits, error);
+    if (!status && child.end == CK_CHILD_DONE) *fold = *found;
+    ck_shared_free(found, sizeof *found);
+    return status;
 }
 
 bool ck_fold_is_another(const ck_Fold *fold, const ck_Truth *truth, const ck_Model *model) {

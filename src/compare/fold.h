@@ -13,8 +13,10 @@ typedef struct ck_Fold {
     double energy; // of that minimum over the truth's, J
 } ck_Fold;
 
-// Polishes where a run came to rest by Newton. Errors: CK_NO_MEMORY.
-ck_Status ck_fold_find(ck_Fold *fold, const ck_Run *run, const ck_Truth *truth, ck_Error *error);
+// Polishes where a run came to rest by Newton, in a child; NaN where it does not get there within its limits.
+// Errors: CK_NO_MEMORY, CK_IO.
+ck_Status ck_fold_find(ck_Fold *fold, const ck_Run *run, const ck_Truth *truth, const ck_Limits *limits,
+                       ck_Error *error);
 
 // True where the minimum is another than the truth's: farther from it than the truth is known, and by far farther than
 // the run is from the minimum.

@@ -24,16 +24,6 @@ bool ck_engine_lacks(const ck_Engine *engine, const ck_Model *model) {
     return model->terms & ~engine->terms;
 }
 
-ck_Status ck_engine_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
-                              ck_Settings *used, ck_Error *error) {
-    void *state;
-    if (ck_engine_lacks(engine, model))
-        return ck_fail(error, CK_REFUSED, "%s does not model all that %s has", engine->name, model->name);
-    ck_Status status = ck_engine_create(engine, &state, model, wanted, used, NULL, error);
-    if (!status) engine->destroy(state);
-    return status;
-}
-
 ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame) {
     for (int i = 0; i < model->release_count && engine->release; i++)
         for (int j = 0; j < model->releases[i].particle_count && model->releases[i].frame == frame; j++)

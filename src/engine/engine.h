@@ -96,11 +96,6 @@ const ck_Setting *ck_engine_setting(const ck_Engine *engine, int slot);
 // True where the model has a term that the engine lacks.
 bool ck_engine_lacks(const ck_Engine *engine, const ck_Model *model);
 
-// What the engine's own rule sets beside wanted: builds its world and takes it down. Errors: CK_REFUSED where it lacks
-// a term or refuses the body, CK_NO_MEMORY.
-ck_Status ck_engine_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
-                              ck_Settings *used, ck_Error *error);
-
 // Lets go the pins that are due at this frame, then advances by one. The first frame is 0.
 ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame);
 

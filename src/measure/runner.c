@@ -202,6 +202,31 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
     return status;
 }
 
+static void find_automatic(void *context) {
+    const Job *job = context;
+    void *state = create(job);
+    if (!job->report->status) job->run->engine->destroy(state);
+}
+
+ck_Status ck_run_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
+                           const ck_Limits *limits, ck_Settings *used, ck_Error *error) {
+    ck_Run run = {.model = model, .engine = engine, .wanted = *wanted};
+    ck_ChildResult child;
+    ck_Limits own = *limits;
+    if (is_unsupported(&run)) return ck_fail(error, CK_REFUSED, "%s", run.reason);
+    Report *report = ck_shared_allocate(sizeof *report);
+    if (!report) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    own.spawns = engine->outside && engine->outside->spawns;
+    ck_Status status = ck_child_run(&child, find_automatic, &(Job){&run, report, 0, &own}, &own, error);
+    if (!status && child.end != CK_CHILD_DONE)
+        status = ck_fail(error, CK_REFUSED, "%s on %s: %s", engine->name, model->name, child.reason);
+    else if (!status && report->status)
+        status = ck_fail(error, report->status, "%s", report->error.message);
+    if (!status) *used = report->used;
+    ck_shared_free(report, sizeof *report);
+    return status;
+}
+
 // What a recording cost is told with it, once and for all.
 static void take_recorded_cost(ck_Run *run) {
     double cost = run->engine->outside->frame_cost;

@@ -42,6 +42,12 @@ bool ck_run_has_all_frames(const ck_Run *run);
 ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *engine, const ck_Settings *wanted,
                          const ck_Limits *limits, ck_Error *error);
 
+// What an engine makes of settings by its own rules, asked in a child, as an engine may hang or crash in that, too.
+// Errors: CK_REFUSED where it lacks a term of the scene, refuses it or does not come back within the limits;
+// CK_NO_MEMORY, CK_IO.
+ck_Status ck_run_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,
+                           const ck_Limits *limits, ck_Settings *used, ck_Error *error);
+
 // One timed repeat, in which nothing is read. Does nothing for a run that has no result to time.
 // Times all frames, or as many as fit into budget seconds by the measured pass, but at least one.
 // Errors: CK_NO_MEMORY, CK_IO.

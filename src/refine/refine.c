@@ -64,7 +64,7 @@ static void describe(const void *context, int index, char *key, size_t size) {
 // What the scene's truth says at a level.
 static ck_Status solve(const ck_Refine *refine, const ck_Model *model, ck_JournalRow *row, ck_Error *error) {
     ck_Truth truth;
-    ck_Status status = ck_truth_create(&truth, model, refine->cache, error);
+    ck_Status status = ck_truth_create(&truth, model, refine->cache, &refine->options->limits, error);
     row->status = truth.path_count ? CK_RUN_OK : CK_RUN_REFUSED;
     snprintf(row->reason, sizeof row->reason, "%s", truth.kind);
     for (int k = 0; k < ck_metric_count() && !status; k++)

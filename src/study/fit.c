@@ -97,7 +97,7 @@ static ck_Status evaluate(Problem *problem, const double *logarithms, double *le
         ck_run_free(&run);
     } else {
         ck_Truth truth = {0};
-        status = ck_truth_create(&truth, &model, NULL, error);
+        status = ck_truth_create(&truth, &model, NULL, &problem->options->limits, error);
         if (!status && !truth.path_count)
             status = ck_fail(error, CK_BAD_INPUT, "%s: its truth has no path to fit (%s)", model.name, truth.kind);
         if (!status) compare_path(problem, &model, &truth.paths[0], left);

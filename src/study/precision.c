@@ -45,7 +45,7 @@ static uint32_t scaled(uint32_t count, double factor) {
 static void add_engine(ck_Precision *precision, const ck_Engine *engine, const ck_CompareOptions *options) {
     const ck_Model *model = &precision->comparison->model;
     ck_Settings wanted = ck_comparison_settings(engine, &precision->comparison->scene, options), used;
-    if (ck_engine_automatic(engine, model, &wanted, &used, NULL)) {
+    if (ck_run_automatic(engine, model, &wanted, &options->limits, &used, NULL)) {
         add_case(precision, engine, wanted, false); // its row says why
         return;
     }

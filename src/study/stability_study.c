@@ -161,13 +161,13 @@ static ck_Status find_rest(ck_StabilityRest *rest, const ck_StabilityMap *map, d
 }
 
 // True where the method has iterations to set; false, too, where the engine does not take the scene.
-static bool iterates(const ck_Engine *engine, const ck_Model *model) {
+static bool iterates(const ck_Engine *engine, const ck_Model *model, const ck_Limits *limits) {
     ck_Settings used, wanted = {.substeps = 1};
-    return !ck_engine_automatic(engine, model, &wanted, &used, NULL) && used.iterations > 0;
+    return !ck_run_automatic(engine, model, &wanted, limits, &used, NULL) && used.iterations > 0;
 }
 
 static void add_engine(ck_StabilityMap *map, const ck_Engine *engine) {
-    bool has_iterations = iterates(engine, &map->comparison->model);
+    bool has_iterations = iterates(engine, &map->comparison->model, &map->options->limits);
     for (int i = 0; i < CK_STABILITY_RESTS; i++)
         for (int share = 0; share < SHARES; share++)
             for (uint32_t iterations = 0; iterations <= 10; iterations += 10)

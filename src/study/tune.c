@@ -276,7 +276,7 @@ static ck_Status validate(const Search *search, ck_Tuning *tuning, const char *p
     ck_Run like = {0};
     const ck_TuneOptions *options = search->tried.options;
     ck_Status status = ck_comparison_load(&other, path, error);
-    if (!status) status = ck_truth_create(&other.truth, &other.model, options->cache, error);
+    if (!status) status = ck_truth_create(&other.truth, &other.model, options->cache, &options->limits, error);
     if (!status && options->goal.like) status = run_like(&like, &other, options, error);
     if (!status) {
         ck_TuneValidation *validation = &tuning->validations[tuning->validation_count++];
@@ -326,8 +326,8 @@ static ck_Status prepare(Search *search, ck_Error *error) {
                        "%s: its truth has no positions to come close to; give --like ENGINE or FILE, --stretch or "
                        "--target METRIC=VALUE",
                        tried->comparison->path);
-    ck_Status status = ck_engine_automatic(tried->options->engine, &tried->comparison->model, &tried->options->given,
-                                           &search->automatic, error);
+    ck_Status status = ck_run_automatic(tried->options->engine, &tried->comparison->model, &tried->options->given,
+                                        &tried->options->limits, &search->automatic, error);
     if (status) return status;
     find_ranges(search);
     tried->aim = goal->aim;

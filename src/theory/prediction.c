@@ -313,8 +313,34 @@ static const Theory *find_theory(ck_Method method, const ck_Truth *truth) {
     return NULL;
 }
 
+// What a prediction is of, and where its path goes: into memory that a child shares.
+typedef struct Sampling {
+    const ck_Model *model;
+    const ck_Engine *engine;
+    const ck_Settings *used;
+    const ck_Truth *truth;
+    const Theory *theory; // NULL: of a network at rest
+    const ck_Trajectory *path;
+    int *frame_count; // 0: theory says nothing after all
+} Sampling;
+
+static void sample(void *context) {
+    const Sampling *to = context;
+    if (!to->theory) {
+        *to->frame_count = rest_on_network(to->model, to->engine, to->used, to->truth, to->path->data);
+        return;
+    }
+    const int frames = to->truth->reference.is_static ? 1 : to->model->frame_count + 1;
+    for (int frame = 0; frame < frames; frame++)
+        if (!to->theory->at(to->model, to->used, frame * to->model->step, ck_trajectory_position(to->path, frame),
+                            ck_trajectory_velocity(to->path, frame)))
+            return;
+    *to->frame_count = frames;
+}
+
 ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine,
-                               const ck_Settings *used, const ck_Truth *truth, ck_Error *error) {
+                               const ck_Settings *used, const ck_Truth *truth, const ck_Limits *limits,
+                               ck_Error *error) {
     *prediction = (ck_Reference){.is_static = truth->reference.is_static, .horizon = model->frame_count};
     const Theory *theory = find_theory(engine->method, truth);
     bool network = !theory && truth->path_count && truth->form->is_static;
@@ -322,18 +348,18 @@ ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, 
     const unsigned beyond =
         CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
     if ((!theory && !network) || left_theory(engine, used) || (model->terms & beyond)) return CK_OK;
-    ck_Trajectory *path = &prediction->trajectory;
-    ck_Status status = ck_trajectory_create(path, model, error);
-    if (!status && network) path->frame_count = rest_on_network(model, engine, used, truth, path->data);
-    if (network) return status;
-    int frames = prediction->is_static ? 1 : model->frame_count + 1;
-    for (int frame = 0; frame < frames && !status; frame++) {
-        if (!theory->at(model, used, frame * model->step, ck_trajectory_position(path, frame),
-                        ck_trajectory_velocity(path, frame))) {
-            path->frame_count = 0;
-            break;
-        }
-        path->frame_count = frame + 1;
-    }
+    ck_ChildResult child = {.end = CK_CHILD_DONE};
+    ck_Status status = ck_trajectory_create(&prediction->trajectory, model, error);
+    int *frame_count = status ? NULL : ck_shared_allocate(sizeof *frame_count);
+    if (!status && !frame_count) status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    if (status) return status;
+    Sampling to = {model, engine, used, truth, theory, &prediction->trajectory, frame_count};
+    if (limits)
+        status = ck_child_run(&child, sample, &to, limits, error);
+    else
+        sample(&to);
+    // one that takes too long is none
+    if (!status && child.end == CK_CHILD_DONE) prediction->trajectory.frame_count = *frame_count;
+    ck_shared_free(frame_count, sizeof *frame_count);
     return status;
 }

@@ -5,14 +5,17 @@
 
 #include "engine.h"
 #include "metric.h"
+#include "process.h"
 #include "truth.h"
 
 // Samples the predicted path of an engine at the model's frames. Without a theory for this method and truth, the
 // prediction stays empty (frame_count 0), which is not an error.
-//   used  the settings that the engine ran with
+//   used    the settings that the engine ran with
+//   limits  it is sampled in a child that keeps them, or stays empty; NULL: here, without any
 // Errors: CK_NO_MEMORY. Free with ck_trajectory_free in any case.
 ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, const ck_Engine *engine,
-                               const ck_Settings *used, const ck_Truth *truth, ck_Error *error);
+                               const ck_Settings *used, const ck_Truth *truth, const ck_Limits *limits,
+                               ck_Error *error);
 
 // The longest stable step that theory gives a method about a rest.
 

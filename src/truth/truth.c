@@ -13,11 +13,14 @@
 #include "truth_cache.h"
 #include "vector.h"
 
+#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #define CLOSED "closed form"
 // What a form must say that it knows.
@@ -186,10 +189,58 @@ static ck_Status sample(ck_Truth *truth, const ck_Model *model, ck_Error *error)
     return status;
 }
 
-static ck_Status solve(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error) {
+// What a child that solves for a truth tells its parent, beside the paths that it writes.
+typedef struct Answer {
+    ck_Status status;
+    ck_Error why;
+} Answer;
+
+typedef struct Question {
+    const ck_Truth *truth;
+    const ck_Model *model;
+    FILE *file;
+    Answer *answer;
+} Question;
+
+static void answer_in_child(void *context) {
+    const Question *question = context;
+    ck_Truth truth = *question->truth;
+    Answer *answer = question->answer;
+    answer->status = truth.form->solve(&truth, question->model, &answer->why);
+    if (answer->status) return;
+    ck_truth_write(&truth, question->model, question->file);
+    if (fflush(question->file)) answer->status = ck_fail(&answer->why, CK_IO, "%s", strerror(errno));
+}
+
+// In a child, as no work of ours knows how long it takes. CK_REFUSED, too, where it passes a limit.
+static ck_Status solve_within(ck_Truth *truth, const ck_Model *model, const ck_Limits *limits, ck_Error *error) {
+    const int memory = memfd_create("truth", MFD_CLOEXEC);
+    FILE *file = memory >= 0 ? fdopen(memory, "w+b") : NULL;
+    Answer *answer = ck_shared_allocate(sizeof *answer);
+    ck_ChildResult child;
+    ck_Status status = CK_OK;
+    if (!file || !answer) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_child_run(&child, answer_in_child, &(Question){truth, model, file, answer}, limits, error);
+    if (!status && child.end != CK_CHILD_DONE)
+        status = ck_fail(error, CK_REFUSED, "%s: its truth was given up: %s", model->name, child.reason);
+    else if (!status && answer->status)
+        status = ck_fail(error, answer->status, "%s", answer->why.message);
+    if (!status) rewind(file);
+    if (!status && !ck_truth_read(truth, model, file))
+        status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    if (file)
+        fclose(file);
+    else if (memory >= 0)
+        close(memory);
+    ck_shared_free(answer, sizeof *answer);
+    return status;
+}
+
+static ck_Status solve(ck_Truth *truth, const ck_Model *model, const char *cache, const ck_Limits *limits,
+                       ck_Error *error) {
     if (cache && ck_truth_cache_load(truth, model, cache)) return CK_OK;
     ck_Error why = {0};
-    ck_Status status = truth->form->solve(truth, model, &why);
+    ck_Status status = limits ? solve_within(truth, model, limits, &why) : truth->form->solve(truth, model, &why);
     if (status == CK_REFUSED) {
         snprintf(truth->kind, sizeof truth->kind, "none: %.*s", (int)sizeof truth->kind - 8, why.message);
         for (int i = 0; i < truth->path_count; i++) ck_trajectory_free(&truth->paths[i]);
@@ -202,7 +253,8 @@ static ck_Status solve(ck_Truth *truth, const ck_Model *model, const char *cache
     return CK_OK;
 }
 
-ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error) {
+ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, const ck_Limits *limits,
+                          ck_Error *error) {
     *truth = (ck_Truth){0};
     ck_Status status = ck_truth_check(model, error);
     if (status || !model->truth) return status;
@@ -211,7 +263,7 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     snprintf(truth->kind, sizeof truth->kind, "%s", truth->form->kind);
     truth->reference.is_invariant = !truth->form->at && !truth->form->solve;
     if (truth->reference.is_invariant) return CK_OK;
-    status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, error);
+    status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, limits, error);
     truth->reference.trajectory = truth->paths[0];
     if (truth->form->off && !(truth->form->is_linear && truth->path_count > 1)) truth->off = truth->form->off(model);
     if (!status && truth->path_count && !truth->form->is_static)

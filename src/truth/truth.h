@@ -4,6 +4,7 @@
 
 #include "metric.h"
 #include "model.h"
+#include "process.h"
 #include "status.h"
 
 struct ck_Truth;
@@ -59,10 +60,12 @@ const ck_TruthForm *ck_truth_form_find(const char *name);
 ck_Status ck_truth_check(const ck_Model *model, ck_Error *error);
 
 // The truth that the model names, at its frames. A computed one is taken from the cache when it is there and whole.
-//   cache  directory, NULL: none
+//   cache   directory, NULL: none
+//   limits  a computed one is solved in a child that keeps them, or given up; NULL: here, without any
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY. That a computed truth does not exist is no error: kind says why. Free in any
 // case.
-ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, ck_Error *error);
+ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, const ck_Limits *limits,
+                          ck_Error *error);
 
 // How far the truth's value of a metric may be off, in the metric's unit: the spread over all paths of the truth,
 // where a metric reads beyond the horizon twice the largest distance in an ensemble, and what reading it off frames

@@ -284,7 +284,7 @@ static void test_cut_scores(void **state) {
     for (int i = 0; i < 2; i++) {
         ck_Comparison comparison;
         fixture_load_comparison(&comparison, texts[i]);
-        assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+        assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL, NULL), CK_OK);
         ck_Run run = {.model = &comparison.model, .engine = &engines[7], .status = CK_RUN_TOO_SLOW};
         assert_int_equal(ck_trajectory_create(&run.trajectory, &comparison.model, NULL), CK_OK);
         run.trajectory.frame_count = 4;

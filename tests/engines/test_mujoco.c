@@ -15,7 +15,7 @@ static double error_on(const char *scene, const char *metric, const ck_Settings 
     char file[400];
     snprintf(file, sizeof file, SCENE_DIRECTORY "/%s.yaml", scene);
     if (fixture_open_truth(&fixture, file, &error)) fail_msg("%s", error.message);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     fixture_run(&path, &fixture.model, mujoco(), settings, NULL);
     const ck_Metric *measured = ck_metric_find(metric);
     double value = ck_metric_value(measured, &fixture.model, &path, &fixture.truth.reference),

@@ -9,7 +9,7 @@ static void load(ck_Comparison *comparison, const char *name) {
     snprintf(path, sizeof path, SCENE_DIRECTORY "/../tests/cases/%s.yaml", name);
     ck_Error error = {0};
     if (ck_comparison_load(comparison, path, &error)) fail_msg("%s", error.message);
-    assert_int_equal(ck_truth_create(&comparison->truth, &comparison->model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&comparison->truth, &comparison->model, NULL, NULL, NULL), CK_OK);
 }
 
 static double truth_of(const ck_Comparison *comparison, const char *metric) {
@@ -122,7 +122,7 @@ static void test_folds(void **state) {
         ck_Run run;
         ck_Fold fold;
         run_as(&run, &comparison, engines[i].engine, (ck_Settings){0}, CK_RUN_OK);
-        assert_int_equal(ck_fold_find(&fold, &run, &comparison.truth, NULL), CK_OK);
+        assert_int_equal(ck_fold_find(&fold, &run, &comparison.truth, &(ck_Limits){.seconds = 60}, NULL), CK_OK);
         print_message("%s: %.2g from its own rest, which is %.2g from the truth's\n", engines[i].engine, fold.own,
                       fold.apart);
         assert_int_equal(ck_fold_is_another(&fold, &comparison.truth, &comparison.model), engines[i].is_another);

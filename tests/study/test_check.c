@@ -61,7 +61,7 @@ static void test_fault(void **state) {
     (void)state;
     ck_Comparison comparison;
     assert_int_equal(ck_comparison_load(&comparison, SCENE_DIRECTORY "/rope_hanging.yaml", NULL), CK_OK);
-    assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&comparison.truth, &comparison.model, NULL, NULL, NULL), CK_OK);
     for (int i = 0; i < ck_engine_count(); i++)
         if (fixture_is_solver(ck_engine_at(i)) && ck_engine_at(i)->order > 0 &&
             fixture_takes(ck_engine_at(i), &comparison.model))

@@ -20,7 +20,7 @@ static void write_scene(char *text, size_t size, double stiffness, double dampin
 static void load_with_truth(ck_Comparison *comparison, const char *text) {
     ck_Error error = {0};
     fixture_load_comparison(comparison, text);
-    if (ck_truth_create(&comparison->truth, &comparison->model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&comparison->truth, &comparison->model, NULL, NULL, &error)) fail_msg("%s", error.message);
 }
 
 // Every second particle at every third frame, to a millimetre: 1/√12 mm of uncertainty.

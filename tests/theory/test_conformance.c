@@ -38,7 +38,7 @@ static const char turn_rigid[] = "name: turn_rigid\nrope: {particles: 2, spacing
 static double distance_to_prediction(const TruthFixture *fixture, const ck_Trajectory *trajectory,
                                      const ck_Engine *engine, const ck_Settings *used) {
     ck_Reference prediction;
-    assert_int_equal(ck_prediction_create(&prediction, &fixture->model, engine, used, &fixture->truth, NULL), CK_OK);
+    assert_int_equal(ck_prediction_create(&prediction, &fixture->model, engine, used, &fixture->truth, NULL, NULL), CK_OK);
     double distance = ck_metric_value(ck_metric_find("position_rms"), &fixture->model, trajectory, &prediction);
     ck_trajectory_free(&prediction.trajectory);
     return distance;
@@ -47,7 +47,7 @@ static double distance_to_prediction(const TruthFixture *fixture, const ck_Traje
 static void check_prediction(const char *text, const ck_Settings *settings, double tolerance) {
     TruthFixture fixture;
     fixture_load_truth(&fixture, text);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
         if (!fixture_is_solver(engine) || !fixture_takes(engine, &fixture.model)) continue;
@@ -91,7 +91,7 @@ static void test_static_hang(void **state) {
             ck_Trajectory path;
             ck_Settings used;
             fixture_load_truth(&fixture, hang);
-            assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+            assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
             const ck_Engine *engine = ck_engine_find(names[i]);
             fixture_run(&path, &fixture.model, engine, &(ck_Settings){.iterations = sweeps}, &used);
             assert_near(names[i], distance_to_prediction(&fixture, &path, engine, &used), 0, 1e-8);
@@ -109,7 +109,7 @@ static void test_sweeps(void **state) {
         "gravity: [0, -9.81, 0]\ndrag: 20\ntime: {duration: 3, step: 0.02}\ntruth: vertical_chain\n";
     TruthFixture fixture;
     fixture_load_truth(&fixture, chain);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     const ck_Engine *bars = ck_engine_find("native-bars");
     const double links = 30;
     for (uint32_t n = 1; n <= 4; n *= 2) {
@@ -117,7 +117,7 @@ static void test_sweeps(void **state) {
         ck_Trajectory trajectory;
         ck_Reference prediction;
         fixture_run(&trajectory, &fixture.model, bars, &settings, &used);
-        assert_int_equal(ck_prediction_create(&prediction, &fixture.model, bars, &used, &fixture.truth, NULL), CK_OK);
+        assert_int_equal(ck_prediction_create(&prediction, &fixture.model, bars, &used, &fixture.truth, NULL, NULL), CK_OK);
         const ck_Metric *sag = ck_metric_find("sag");
         double dt = fixture.model.step / settings.substeps, size = fixture.model.size;
         double stretch = size * (ck_metric_value(sag, &fixture.model, &trajectory, &prediction) - 1);
@@ -139,7 +139,7 @@ static void test_network_at_rest(void **state) {
     (void)state;
     TruthFixture fixture;
     fixture_load_truth(&fixture, net);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     assert_true(fixture.truth.path_count > 0);
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
@@ -332,7 +332,7 @@ static void test_rope(void **state) {
     fixture_free_truth(&fixture);
 
     fixture_load_truth(&fixture, slack);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     fixture_run(&trajectory, &fixture.model, rope, NULL, NULL);
     assert_near("the rigid catenary",
                 ck_metric_value(ck_metric_find("position_rms"), &fixture.model, &trajectory, &fixture.truth.reference),

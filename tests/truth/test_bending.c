@@ -25,7 +25,7 @@ static void load_cantilever(TruthFixture *fixture, int segments, double load) {
 static void droops(TruthFixture *fixture, double *rest, double *truth) {
     ck_Error error = {0};
     ck_Equilibrium equilibrium;
-    if (ck_truth_create(&fixture->truth, &fixture->model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture->truth, &fixture->model, NULL, NULL, &error)) fail_msg("%s", error.message);
     const double *start = ck_trajectory_position(&fixture->truth.paths[0], 0);
     if (ck_equilibrium_solve(&equilibrium, &fixture->model, start, &error)) fail_msg("%s", error.message);
     const int tip = 3 * (fixture->model.particle_count - 1) + 1;
@@ -306,7 +306,7 @@ static void test_sheet(void **state) {
         "gravity: [0, -9.81, 0]\ntime: {duration: 1, step: 1}\n",
         ROWS, COLUMNS, spacing, 0.02 * ROWS, 1e7 * weight / spacing / COLUMNS);
     fixture_load(&sheet, text);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, &error), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error), CK_OK);
     const double *start = ck_trajectory_position(&fixture.truth.paths[0], 0);
     double *spread = malloc(3 * ROWS * COLUMNS * sizeof *spread);
     for (int i = 0; i < ROWS * COLUMNS; i++) {
@@ -407,7 +407,7 @@ static void test_engines(void **state) {
                        "name: e\nrope: {particles: 14, spacing: 0.03, mass: 0.042, along: [1, 0, 0]}\n"
                        "springs: {stiffness: 2000, damping: 0.05}\nbending: {stiffness: 0.004}\npins: [0, 1]\n"
                        "gravity: [0, -9.81, 0]\ndrag: 10\ntime: {duration: 2, fps: 60}\ntruth: equilibrium\n");
-    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
     int count = 0;
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
@@ -435,7 +435,7 @@ static void test_motion(void **state) {
     fixture_load_truth(&fixture, "name: m\nrope: {particles: 10, spacing: 0.03, mass: 0.03, along: [1, 0, 0]}\n"
                                  "springs: {stiffness: 500, damping: 0.02}\nbending: {stiffness: 0.002}\npins: [0, 1]\n"
                                  "gravity: [0, -9.81, 0]\ntime: {duration: 0.5, fps: 60}\ntruth: trajectory\n");
-    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
     assert_true(fixture.truth.path_count > 0);
     for (uint32_t i = 0; i < 2; i++) {
         const ck_Settings settings = {.substeps = 100u << i};

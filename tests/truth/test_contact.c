@@ -9,7 +9,7 @@
 
 static void load(TruthFixture *fixture, const char *text) {
     fixture_load_truth(fixture, text);
-    assert_int_equal(ck_truth_create(&fixture->truth, &fixture->model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture->truth, &fixture->model, NULL, NULL, NULL), CK_OK);
 }
 
 static double value_of(const TruthFixture *fixture, const ck_Trajectory *trajectory, const char *metric) {

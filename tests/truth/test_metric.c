@@ -169,7 +169,7 @@ static void test_pins_hold_the_weight(void **state) {
         TruthFixture fixture;
         ck_Error error = {0};
         fixture_load_truth(&fixture, cases[i]);
-        if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+        if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
         // forces are balanced to 1e-10 of the load
         assert_near("held", ck_metric_truth(ck_metric_find("pin_force"), &fixture.model, &fixture.truth.reference), 1,
                     1e-9);

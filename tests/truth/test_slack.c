@@ -40,7 +40,7 @@ static void test_reference(void **state) {
                        "name: s\ncloth: {rows: 3, columns: 3, spacing: 0.1, mass: 0.02, down: [0, 0, 1]}\n"
                        "springs: {stiffness: 60, shear: 30, damping: 0.01, pull_only: true}\npins: [top_edge]\n"
                        "gravity: [0, -9.81, 0]\ntime: {duration: 0.1, fps: 100}\ntruth: trajectory\n");
-    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
     const ck_Settings settings = {.substeps = 100};
     fixture_run(&path, &fixture.model, ck_engine_find("native-verlet"), &settings, NULL);
     const double off = ck_metric_value(ck_metric_find("position_rms"), &fixture.model, &path, &fixture.truth.reference);
@@ -66,7 +66,7 @@ static void test_length(void **state) {
                  pulls ? ", pull_only: true" : "");
         fixture_load_truth(&fixture, text);
         assert_near("size", fixture.model.size, 1.2, 1e-15);
-        if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+        if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
         fixture_run(&path, &fixture.model, ck_engine_find("native-verlet"), NULL, NULL);
         const double off =
             ck_metric_value(ck_metric_find("position_rms"), &fixture.model, &path, &fixture.truth.reference);

@@ -38,7 +38,7 @@ static void test_slinky(void **state) {
     for (int i = 1; i <= last; i++)
         assert_near("hung", model->position[3 * i - 2] - model->position[3 * i + 1],
                     0.05 + (last - i + 1) * 0.02 * 9.81 / 260, 1e-12);
-    if (ck_truth_create(&truth, model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&truth, model, NULL, NULL, &error)) fail_msg("%s", error.message);
     ck_ReferencePath reference;
     if (ck_reference_path_create(&reference, model, &error)) fail_msg("%s", error.message);
     const double arrives = sqrt(0.42 / (260.0 / 20));
@@ -69,7 +69,7 @@ static void test_slinky(void **state) {
     fixture_free(&fixture);
     snprintf(text, sizeof text, slinky, 60.0, 3.0);
     load(&fixture, text, CK_OK, NULL);
-    assert_int_equal(ck_truth_create(&truth, &fixture.model, NULL, &error), CK_BAD_INPUT);
+    assert_int_equal(ck_truth_create(&truth, &fixture.model, NULL, NULL, &error), CK_BAD_INPUT);
     assert_non_null(strstr(error.message, "where coils meet"));
     ck_truth_free(&truth);
     fixture_free(&fixture);

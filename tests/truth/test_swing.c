@@ -11,7 +11,7 @@ static double off_of(const char *text) {
     ck_ReferencePath path;
     double largest = 0;
     fixture_load_truth(&fixture, text);
-    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
     if (ck_reference_path_create(&path, &fixture.model, &error)) fail_msg("%s", error.message);
     for (int frame = 0; frame <= fixture.model.frame_count; frame++)
         largest = fmax(largest, ck_distance(ck_trajectory_position(&fixture.truth.paths[0], frame) + 3,

@@ -15,7 +15,7 @@ static double off_of(const char *scene, int *frames) {
     char file[300];
     snprintf(file, sizeof file, SCENE_DIRECTORY "/%s.yaml", scene);
     if (fixture_open_truth(&fixture, file, &error)) fail_msg("%s", error.message);
-    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
     if (ck_reference_path_create(&path, &fixture.model, &error)) fail_msg("%s: %s", scene, error.message);
     double largest = 0;
     *frames = path.horizon;

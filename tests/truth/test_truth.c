@@ -53,7 +53,7 @@ static void test_rest(void **state) {
         ck_Error error = {0};
         ck_Equilibrium equilibrium;
         if (ck_equilibrium_release(&equilibrium, &fixture.model, 0, 0, &error)) fail_msg("%s", error.message);
-        assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, &error), CK_OK);
+        assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error), CK_OK);
         assert_near(fixture.model.name, apart(&fixture.model, equilibrium.position, fixture.truth.paths[0].data), 0,
                     cases[i].tolerance);
         assert_true(equilibrium.residual <= CK_EQUILIBRIUM_RESIDUAL && equilibrium.is_minimum);
@@ -78,7 +78,7 @@ static void test_inextensible_catenary(void **state) {
         snprintf(scene, sizeof scene, text, springs[i], i ? "" : "truth: catenary\n");
         fixture_load_truth(&fixture[i], scene);
         ck_Error error = {0};
-        if (!i) assert_int_equal(ck_truth_create(&fixture[0].truth, &fixture[0].model, NULL, NULL), CK_OK);
+        if (!i) assert_int_equal(ck_truth_create(&fixture[0].truth, &fixture[0].model, NULL, NULL, NULL), CK_OK);
         if (i && ck_equilibrium_solve(&equilibrium[i], &fixture[i].model, fixture[0].truth.paths[0].data, &error))
             fail_msg("%s", error.message);
     }
@@ -129,7 +129,7 @@ static void test_motion(void **state) {
         ck_Error error = {0};
         ck_ReferencePath path;
         if (ck_reference_path_create(&path, model, &error)) fail_msg("%s", error.message);
-        assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, &error), CK_OK);
+        assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL, &error), CK_OK);
         double largest = 0, speed = 0;
         for (int frame = 0; frame <= model->frame_count; frame++) {
             largest = fmax(largest, apart(model, ck_trajectory_position(&path.fine, frame),
@@ -160,7 +160,7 @@ static void test_pendulum(void **state) {
     TruthFixture bar, spring;
     fixture_load_truth(&bar, rigid);
     fixture_load_truth(&spring, stiff);
-    assert_int_equal(ck_truth_create(&bar.truth, &bar.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&bar.truth, &bar.model, NULL, NULL, NULL), CK_OK);
     ck_Trajectory path;
     // ω·dt = 0.6: the spring itself is followed, though it hardly moves
     assert_int_equal(ck_reference_integrate(&path, &spring.model, 2048, 0, 0, NULL), CK_OK);
@@ -211,7 +211,7 @@ static void test_horizon(void **state) {
         snprintf(scene, sizeof scene, text, damped ? 8.0 : 0.0);
         TruthFixture fixture;
         fixture_load_truth(&fixture, scene);
-        assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+        assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
         int horizon = fixture.truth.reference.horizon;
         if (damped) assert_int_equal(horizon, fixture.model.frame_count);
         if (!damped && (horizon < 20 || horizon >= fixture.model.frame_count)) fail_msg("horizon at frame %d", horizon);
@@ -236,7 +236,7 @@ static void test_ensemble(void **state) {
         TruthFixture fixture;
         fixture_load_truth(&fixture, scene);
         const ck_Model *model = &fixture.model;
-        assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL), CK_OK);
+        assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL, NULL), CK_OK);
         assert_true(fixture.truth.reference.horizon < model->frame_count);
         for (uint64_t seed = 100; seed < 106; seed++) {
             ck_Trajectory path;
@@ -263,7 +263,7 @@ static void test_taut_bars(void **state) {
                                  "{rigid: true}\npins: [first, last]\ngravity: [0, -9.81, 0]\n"
                                  "time: {duration: 1, step: 0.02}\ntruth: catenary\n");
     const ck_Model *model = &fixture.model;
-    assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL, NULL), CK_OK);
     assert_near("a taut catenary", apart(model, model->position, fixture.truth.paths[0].data), 0, 1e-15);
     assert_true(ck_truth_uncertainty(&fixture.truth, model, ck_metric_find("position_rms")) < 1e-7);
     fixture_free_truth(&fixture);
@@ -280,7 +280,7 @@ static void test_cache(void **state) {
                        "100, shear: 50}\npins: [top_left, top_right]\ntruth: equilibrium\n" HANGING_TIME);
     const ck_Model *model = &fixture.model;
     ck_Truth solved, cached = {.form = ck_truth_form_find("equilibrium")};
-    assert_int_equal(ck_truth_create(&solved, model, directory, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&solved, model, directory, NULL, NULL), CK_OK);
     assert_true(ck_truth_cache_load(&cached, model, directory));
     assert_int_equal(cached.path_count, solved.path_count);
     assert_memory_equal(cached.paths[0].data, solved.paths[0].data, solved.paths[0].bytes);
@@ -311,7 +311,7 @@ static void test_cache(void **state) {
     assert_false(ck_truth_cache_load(&cached, model, directory));
     // and is made anew
     ck_Truth again;
-    assert_int_equal(ck_truth_create(&again, model, directory, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&again, model, directory, NULL, NULL), CK_OK);
     assert_memory_equal(again.paths[0].data, solved.paths[0].data, solved.paths[0].bytes);
     cached = (ck_Truth){.form = solved.form};
     assert_true(ck_truth_cache_load(&cached, model, directory));
@@ -360,7 +360,7 @@ static void test_shipped_equilibria(void **state) {
         bool at_rest =
             fixture.model.truth && !strcmp(fixture.model.truth, "equilibrium") && fixture.model.particle_count < 500;
         if (at_rest) {
-            if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+            if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
             if (!fixture.truth.path_count) fail_msg("%s", fixture.truth.kind);
             double residual = ck_equilibrium_residual(&fixture.model, fixture.truth.paths[0].data);
             // and what a place is rounded to there, at both ends of every spring
@@ -417,7 +417,7 @@ static void test_capstan(void **state) {
         fixture_load_truth(&fixture, text);
         const ck_Model *model = &fixture.model;
         const ck_Reference *reference = &fixture.truth.reference;
-        assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL), CK_OK);
+        assert_int_equal(ck_truth_create(&fixture.truth, model, NULL, NULL, NULL), CK_OK);
         fixture_run(&path, model, ck_engine_find("native-verlet"), NULL, NULL);
         assert_near("friction of the truth", ck_metric_truth(friction, model, reference), 0.3, 0.01 * 0.3);
         assert_near("friction of an engine", ck_metric_value(friction, model, &path, reference), 0.3, 0.01 * 0.3);
@@ -435,7 +435,7 @@ static void test_unstable(void **state) {
     TruthFixture fixture;
     write_rope_over_ball(text, sizeof text, 0.02, 0);
     fixture_load_truth(&fixture, text);
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     assert_true(fixture.truth.reference.ends);
     assert_in_range(fixture.truth.reference.horizon, 1, 15);
     assert_true(isnan(ck_metric_truth(ck_metric_find("sag"), &fixture.model, &fixture.truth.reference)));
@@ -445,7 +445,7 @@ static void test_unstable(void **state) {
                        "name: upside\nrope: {particles: 2, spacing: 1, mass: 2, along: [1.0e-4, 1, 0]}\nsprings: "
                        "{rigid: true}\npins: [first]\ngravity: [0, -9.81, 0]\ntime: {duration: 20, step: 0.02}\n"
                        "truth: pendulum\n");
-    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, NULL), CK_OK);
     assert_true(fixture.truth.reference.ends);
     // ln(1e4)/√(g/L) = 2.9 s, less what a turned bar is ahead by at once
     assert_near("horizon", fixture.truth.reference.horizon * 0.02, log(1e4) / sqrt(9.81), 0.5);
@@ -475,13 +475,58 @@ static void test_far(void **state) {
     }
 }
 
+// In a child it is the same to the last bit; one that takes too long is given up, with a word, and leaves nothing.
+static void test_limits(void **state) {
+    (void)state;
+    const ck_Limits limits = {.seconds = 60}, less = {.seconds = 0.2};
+    TruthFixture fixture, endless;
+    ck_Truth here, there;
+    fixture_load_truth(&fixture, "name: a\nrope: {particles: 4, spacing: 0.1, mass: 0.4}\nsprings: {stiffness: 50}\n"
+                                 "pins: [first]\ngravity: [1, -9.81, 0]\ntime: {duration: 0.3, fps: 60}\n"
+                                 "truth: trajectory\n");
+    assert_int_equal(ck_truth_create(&here, &fixture.model, NULL, NULL, NULL), CK_OK);
+    assert_int_equal(ck_truth_create(&there, &fixture.model, NULL, &limits, NULL), CK_OK);
+    assert_int_equal(here.path_count, there.path_count);
+    assert_int_equal(here.reference.horizon, there.reference.horizon);
+    for (int i = 0; i < here.path_count; i++) {
+        assert_int_equal(here.paths[i].frame_count, there.paths[i].frame_count);
+        assert_memory_equal(here.paths[i].data, there.paths[i].data, here.paths[i].bytes);
+    }
+    ck_truth_free(&here);
+    ck_truth_free(&there);
+    fixture_free_truth(&fixture);
+    // a gram of cloth and springs of 1e6 N/m, for a second
+    fixture_load_truth(&endless,
+                       "name: e\ncloth: {rows: 30, columns: 30, spacing: 0.05, mass: 0.001, down: [0, 0, 1]}\n"
+                       "springs: {stiffness: 1.0e+6}\npins: [top_left, top_right]\ngravity: [0, -9.81, 0]\n"
+                       "time: {duration: 1, step: 1}\ntruth: trajectory\n");
+    const double start = ck_wall();
+    assert_int_equal(ck_truth_create(&there, &endless.model, NULL, &less, NULL), CK_OK);
+    // by itself it takes minutes
+    assert_true(ck_wall() - start < 30);
+    assert_int_equal(there.path_count, 0);
+    if (!strstr(there.kind, "given up: still running after the limit of 0.2 s")) fail_msg("%s", there.kind);
+    ck_truth_free(&there);
+    fixture_free_truth(&endless);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rest),    cmocka_unit_test(test_far),      cmocka_unit_test(test_inextensible_catenary),
-        cmocka_unit_test(test_motion),  cmocka_unit_test(test_pendulum), cmocka_unit_test(test_reference_order),
-        cmocka_unit_test(test_horizon), cmocka_unit_test(test_ensemble), cmocka_unit_test(test_taut_bars),
-        cmocka_unit_test(test_cache),   cmocka_unit_test(test_saddle),   cmocka_unit_test(test_shipped_equilibria),
-        cmocka_unit_test(test_capstan), cmocka_unit_test(test_unstable),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_rest),
+        cmocka_unit_test(test_far),
+        cmocka_unit_test(test_inextensible_catenary),
+        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_pendulum),
+        cmocka_unit_test(test_reference_order),
+        cmocka_unit_test(test_horizon),
+        cmocka_unit_test(test_ensemble),
+        cmocka_unit_test(test_taut_bars),
+        cmocka_unit_test(test_cache),
+        cmocka_unit_test(test_saddle),
+        cmocka_unit_test(test_shipped_equilibria),
+        cmocka_unit_test(test_capstan),
+        cmocka_unit_test(test_unstable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

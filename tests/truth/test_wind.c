@@ -65,7 +65,7 @@ static void test_fall(void **state) {
     ck_Error error = {0};
     ck_Trajectory path;
     if (fixture_open_truth(&fixture, SCENE_DIRECTORY "/air_fall.yaml", &error)) fail_msg("%s", error.message);
-    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, &error)) fail_msg("%s", error.message);
+    if (ck_truth_create(&fixture.truth, &fixture.model, NULL, NULL, &error)) fail_msg("%s", error.message);
     const double terminal = sqrt(2 * 0.2 * 9.81 / (1.225 * 1.2));
     int count = 0;
     for (int i = 0; i < ck_engine_count(); i++) {

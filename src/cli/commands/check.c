@@ -47,7 +47,8 @@ static ck_Status load_scenes(Work *work, ck_Error *error) {
             work->comparison_count++;
     }
     for (int i = 0; i < work->comparison_count && !status; i++)
-        status = ck_truth_create(&work->comparisons[i].truth, &work->comparisons[i].model, cache, error);
+        status = ck_truth_create(&work->comparisons[i].truth, &work->comparisons[i].model, cache,
+                                 &arguments->options.limits, error);
     free(cache);
     return status;
 }

@@ -30,7 +30,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     const ck_Engine *engine = arguments.engines[0];
     if (!status) {
         const ck_Settings wanted = ck_comparison_settings(engine, &comparison.scene, &arguments.options);
-        status = ck_engine_automatic(engine, &comparison.model, &wanted, &used, &error);
+        status = ck_run_automatic(engine, &comparison.model, &wanted, &arguments.options.limits, &used, &error);
     }
     if (!status) status = ck_code_write(stdout, engine, &comparison.model, &used, comparison.path, &error);
     ck_comparison_free(&comparison);

@@ -91,7 +91,7 @@ static bool is_header_sound(const Header *header, const ck_Truth *truth, const c
            header->horizon < (truth->form->is_static ? 1 : header->frame_counts[0]);
 }
 
-// Reads the paths and holds them against the header's hash, and an equilibrium against its own forces.
+// Reads the paths and holds them against the header's hash.
 static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *model, FILE *file) {
     uint64_t value = CK_HASH_START;
     for (int i = 0; i < header->path_count; i++) {
@@ -103,9 +103,6 @@ static bool read_paths(ck_Truth *loaded, const Header *header, const ck_Model *m
         if (fread(path->data, 1, path->bytes, file) != path->bytes) return false;
         path->frame_count = header->frame_counts[i];
         value = ck_hash(value, path->data, path->bytes);
-        if (i || !loaded->form->is_static) continue;
-        double residual = ck_equilibrium_residual(model, path->data);
-        if (!(residual >= 0 && residual <= ck_equilibrium_tolerance(model))) return false;
     }
     return value == header->data && fgetc(file) == EOF;
 }
@@ -114,18 +111,11 @@ static void name_of(char *name, size_t size, const ck_Model *model) {
     snprintf(name, size, "%016llx.truth", (unsigned long long)ck_truth_cache_hash(model));
 }
 
-bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *directory) {
-    char name[40];
-    name_of(name, sizeof name, model);
-    char *path = ck_path_join(directory, name);
-    FILE *file = path ? fopen(path, "rb") : NULL;
-    free(path);
-    if (!file) return false;
+bool ck_truth_read(ck_Truth *truth, const ck_Model *model, FILE *file) {
     Header header;
     ck_Truth loaded = {.form = truth->form};
     bool sound = fread(&header, sizeof header, 1, file) == 1 && is_header_sound(&header, truth, model) &&
                  read_paths(&loaded, &header, model, file);
-    fclose(file);
     if (!sound) {
         ck_truth_free(&loaded);
         return false;
@@ -136,10 +126,34 @@ bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *dir
     return true;
 }
 
-ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, const char *directory) {
+// What a file says of an equilibrium is held against its own forces.
+static bool balances(const ck_Truth *truth, const ck_Model *model) {
+    if (!truth->form->is_static) return true;
+    const double residual = ck_equilibrium_residual(model, truth->paths[0].data);
+    return residual >= 0 && residual <= ck_equilibrium_tolerance(model);
+}
+
+bool ck_truth_cache_load(ck_Truth *truth, const ck_Model *model, const char *directory) {
     char name[40];
-    ck_WholeFile whole;
     name_of(name, sizeof name, model);
+    char *path = ck_path_join(directory, name);
+    FILE *file = path ? fopen(path, "rb") : NULL;
+    free(path);
+    if (!file) return false;
+    ck_Truth loaded = {.form = truth->form};
+    bool is_there = ck_truth_read(&loaded, model, file) && balances(&loaded, model);
+    fclose(file);
+    if (is_there) {
+        memcpy(truth->paths, loaded.paths, sizeof loaded.paths);
+        truth->path_count = loaded.path_count;
+        truth->reference.horizon = loaded.reference.horizon;
+    } else {
+        ck_truth_free(&loaded);
+    }
+    return is_there;
+}
+
+void ck_truth_write(const ck_Truth *truth, const ck_Model *model, FILE *file) {
     Header header = {.format = FORMAT,
                      .model = ck_truth_cache_hash(model),
                      .data = CK_HASH_START,
@@ -150,11 +164,18 @@ ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, cons
         header.frame_counts[i] = truth->paths[i].frame_count;
         header.data = ck_hash(header.data, truth->paths[i].data, path_bytes(model, truth->paths[i].frame_count));
     }
+    fwrite(&header, sizeof header, 1, file);
+    for (int i = 0; i < truth->path_count; i++)
+        fwrite(truth->paths[i].data, 1, path_bytes(model, truth->paths[i].frame_count), file);
+}
+
+ck_Status ck_truth_cache_save(const ck_Truth *truth, const ck_Model *model, const char *directory) {
+    char name[40];
+    ck_WholeFile whole;
+    name_of(name, sizeof name, model);
     ck_Status status = ck_whole_file_open(&whole, directory, name, NULL);
     if (!status) {
-        fwrite(&header, sizeof header, 1, whole.file);
-        for (int i = 0; i < truth->path_count; i++)
-            fwrite(truth->paths[i].data, 1, path_bytes(model, truth->paths[i].frame_count), whole.file);
+        ck_truth_write(truth, model, whole.file);
         status = ck_whole_file_close(&whole, NULL);
     }
     ck_whole_file_discard(&whole);
