@@ -1,9 +1,12 @@
 #include "files.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -79,29 +82,72 @@ int ck_path_make(const char *directory) {
     return mkdir(path, 0777) && errno != EEXIST ? errno : 0;
 }
 
+// True for NAME.NUMBER.part, what a file is called until it is whole.
+static bool is_part(const char *name) {
+    const char *end = strrchr(name, '.');
+    if (!end || strcmp(end, ".part") || end == name) return false;
+    const char *digit = end - 1;
+    while (digit > name && *digit >= '0' && *digit <= '9') digit--;
+    return digit > name && *digit == '.' && digit < end - 1;
+}
+
+// Removes what processes that were killed have left half written: nobody holds its lock any more.
+static void sweep(const char *directory) {
+    DIR *folder = opendir(directory);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        if (!is_part(entry->d_name)) continue;
+        const int left = openat(dirfd(folder), entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (left < 0) continue;
+        if (!flock(left, LOCK_EX | LOCK_NB)) unlinkat(dirfd(folder), entry->d_name, 0);
+        close(left);
+    }
+    if (folder) closedir(folder);
+}
+
+// A new file with its lock. Below 0: errno says why.
+static int open_locked(const char *path) {
+    for (int tries = 0; tries < 100; tries++) {
+        struct stat held, named;
+        const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (file < 0) return -1;
+        // one that was swept before it was locked is nobody's
+        if (!flock(file, LOCK_EX | LOCK_NB) && !fstat(file, &held) && !stat(path, &named) &&
+            held.st_ino == named.st_ino)
+            return file;
+        close(file);
+    }
+    errno = EBUSY;
+    return -1;
+}
+
 ck_Status ck_whole_file_open(ck_WholeFile *whole, const char *directory, const char *name, ck_Error *error) {
     *whole = (ck_WholeFile){.path = ck_path_join(directory, name), .part = ck_path_part(directory, name)};
     if (!whole->path || !whole->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-    whole->file = fopen(whole->part, "wb");
-    return whole->file ? CK_OK : ck_fail(error, CK_IO, "%s: %s", whole->part, strerror(errno));
+    sweep(directory);
+    const int file = open_locked(whole->part);
+    whole->file = file >= 0 ? fdopen(file, "wb") : NULL;
+    if (!whole->file) ck_fail(error, CK_IO, "%s: %s", whole->part, strerror(errno));
+    if (!whole->file && file >= 0) close(file);
+    return whole->file ? CK_OK : CK_IO;
 }
 
 ck_Status ck_whole_file_close(ck_WholeFile *whole, ck_Error *error) {
     int failed = fflush(whole->file) || ferror(whole->file) || fsync(fileno(whole->file));
-    failed |= fclose(whole->file);
-    whole->file = NULL;
+    // as long as its lock is held, nobody takes it for left behind
     if (!failed) failed = rename(whole->part, whole->path);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", whole->path, strerror(errno)) : CK_OK;
     if (failed) unlink(whole->part);
+    fclose(whole->file);
+    whole->file = NULL;
     ck_whole_file_discard(whole);
     return status;
 }
 
 void ck_whole_file_discard(ck_WholeFile *whole) {
-    if (whole->file) fclose(whole->file);
     if (whole->file) unlink(whole->part);
+    if (whole->file) fclose(whole->file);
     free(whole->path);
     free(whole->part);
     *whole = (ck_WholeFile){0};

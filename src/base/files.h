@@ -46,7 +46,8 @@ static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
     return start;
 }
 
-// A file that appears whole or not at all: written beside its name, then renamed.
+// A file that appears whole or not at all: written beside its name under a lock, then renamed. What killed processes
+// have left of theirs in a directory is removed when the next is begun there.
 typedef struct ck_WholeFile {
     FILE *file;        // to write to
     char *path, *part; // the name it gets, and the one it is written under

@@ -27,9 +27,11 @@ int ck_command_end(ck_Arguments *arguments, ck_Status status, ck_Error *error) {
 }
 
 void ck_command_catch_signals(void) {
-    signal(SIGINT, interrupt);
-    signal(SIGTERM, interrupt);
-    signal(SIGHUP, interrupt);
+    // a wait for another end, as of a pipe in place of a file, is not taken up again
+    const struct sigaction action = {.sa_handler = interrupt};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
 }
 
 // How far a comparison of several scenes has come, for its line on the terminal.

@@ -121,7 +121,11 @@ static ck_Status parse(Reader *reader, const char *text, size_t length, ck_Error
 
 // One write, so that rows of several processes do not mix.
 static ck_Status append(const ck_Journal *journal, const char *text, size_t length, ck_Error *error) {
-    if (write(journal->file, text, length) == (ssize_t)length) return CK_OK;
+    ssize_t written = write(journal->file, text, length);
+    if (written == (ssize_t)length) return CK_OK;
+    // a disk that is full takes what still fits and says so the next time; the half row is dropped by who reads it
+    if (written >= 0) written = write(journal->file, text + written, length - (size_t)written);
+    if (written >= 0) errno = ENOSPC;
     return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
 }
 
