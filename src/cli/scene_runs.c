@@ -2,6 +2,7 @@
 #include "files.h"
 #include "process.h"
 #include "tables.h"
+#include "unfinished.h"
 
 #include <math.h>
 #include <signal.h>
@@ -61,8 +62,26 @@ static ck_Status check_names(const ck_Comparison *comparisons, int count, ck_Err
     return CK_OK;
 }
 
-static ck_Status run_all(ck_Comparison *comparisons, ck_Arguments *arguments, ck_Tables *tables, ck_Show *show,
-                         ck_Error *error) {
+// One scene to its tables, replay and answer: run, or as an interrupted comparison has left it.
+static ck_Status run_one(ck_Comparison *comparison, ck_Arguments *arguments, const ck_CompareOptions *options,
+                         ck_Tables *tables, const ck_Unfinished *unfinished, ck_Show *show, ck_Error *error) {
+    if (ck_unfinished_take(unfinished, comparison, tables)) {
+        ck_answer_line(&arguments->answer, CK_ANSWER_NOTE, "%s: as it was finished before the interruption",
+                       comparison->model.name);
+        return CK_OK;
+    }
+    ck_Status status = ck_comparison_run(comparison, options, error);
+    ck_progress_clear();
+    if (!status && unfinished->directory) status = ck_unfinished_keep(unfinished, comparison, options, error);
+    if (!status && arguments->out) ck_tables_add(tables, comparison, options);
+    if (!status && arguments->out && !unfinished->directory)
+        status = ck_replay_write(comparison, arguments->out, arguments->appends && arguments->by_engine, error);
+    if (!status) show(arguments, comparison);
+    return status;
+}
+
+static ck_Status run_all(ck_Comparison *comparisons, ck_Arguments *arguments, ck_Tables *tables,
+                         const ck_Unfinished *unfinished, ck_Show *show, ck_Error *error) {
     ck_CompareOptions options = arguments->options;
     ck_command_catch_signals();
     options.progress = show_progress;
@@ -73,21 +92,47 @@ static ck_Status run_all(ck_Comparison *comparisons, ck_Arguments *arguments, ck
     far.scenes = arguments->scene_count;
     for (int i = 0; i < arguments->scene_count && !status; i++) {
         far.scene = i;
-        status = ck_comparison_run(&comparisons[i], &options, error);
-        ck_progress_clear();
-        if (!status && arguments->out) ck_tables_add(tables, &comparisons[i], &options);
-        if (!status && arguments->out)
-            status =
-                ck_replay_write(&comparisons[i], arguments->out, arguments->appends && arguments->by_engine, error);
-        if (!status) show(arguments, &comparisons[i]);
+        status = run_one(&comparisons[i], arguments, &options, tables, unfinished, show, error);
         ck_comparison_free_runs(&comparisons[i]);
+        const ck_Error why = *error;
+        if (status && unfinished->directory && i)
+            status = ck_fail(error, status, "%s; %s/unfinished has %d finished scenes: the same command goes on there",
+                             why.message, arguments->out, i);
     }
     free(cache);
     return status;
 }
 
+// All that the results of a comparison depend on: the command line, the scenes' texts and this program.
+static char *question_of(const ck_Arguments *arguments, const ck_Comparison *comparisons, int count) {
+    uint64_t scenes = CK_HASH_START;
+    char *question;
+    for (int i = 0; i < count; i++)
+        scenes = ck_hash(scenes, comparisons[i].scene.document.text, comparisons[i].scene.document.length);
+    return asprintf(&question, "%s\t(%d scenes %016llx, clothcheck %s)\n", arguments->question, count,
+                    (unsigned long long)scenes, CK_VERSION) < 0
+               ? NULL
+               : question;
+}
+
+// Of several scenes, what is finished is kept until all are.
+static ck_Status open_unfinished(ck_Unfinished *unfinished, ck_Arguments *arguments, const ck_Comparison *comparisons,
+                                 int count, ck_Error *error) {
+    if (!arguments->out || arguments->by_engine || count < 2) return CK_OK;
+    int dropped;
+    char *question = question_of(arguments, comparisons, count);
+    ck_Status status = question ? ck_unfinished_open(unfinished, arguments->out, question, &dropped, error)
+                                : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status && dropped)
+        ck_answer_line(&arguments->answer, CK_ANSWER_NOTE,
+                       "%d finished scenes of an interrupted comparison that was asked otherwise are dropped", dropped);
+    free(question);
+    return status;
+}
+
 ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *error) {
     ck_Tables tables = {0};
+    ck_Unfinished unfinished = {0};
     int count = 0;
     ck_Comparison *comparisons = calloc((size_t)arguments->scene_count, sizeof *comparisons);
     ck_Status status = comparisons ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -98,9 +143,12 @@ ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *err
     if (!status && arguments->out)
         status = ck_tables_open(&tables, arguments->out, keeping, arguments->by_engine, comparisons, count,
                                 &arguments->options, error);
-    if (!status) status = run_all(comparisons, arguments, &tables, show, error);
+    if (!status) status = open_unfinished(&unfinished, arguments, comparisons, count, error);
+    if (!status) status = run_all(comparisons, arguments, &tables, &unfinished, show, error);
     if (!status && arguments->out) status = ck_tables_close(&tables, error);
+    if (!status) status = ck_unfinished_finish(&unfinished, error);
     ck_tables_discard(&tables);
+    ck_unfinished_close(&unfinished);
     for (int i = 0; i < count; i++) ck_comparison_free(&comparisons[i]);
     free(comparisons);
     return status;

@@ -76,6 +76,43 @@ static void test_kill(void **state) {
     assert_int_equal(size_of("killed/stability.journal"), -1);
 }
 
+#define COMPARISON                                                                                                     \
+    "compare oscillator bounce slide_0 incline_slips rope_hanging --engine native-verlet --engine native-xpbd "        \
+    "--engine bullet-pbd --repeats 1 --out "
+
+// Killed at random moments, a comparison goes on with the scenes that it had finished, to the same rows; what it leaves
+// meanwhile is gone in the end.
+static void test_kill_comparison(void **state) {
+    (void)state;
+    static const char *const files[] = {"metrics.csv", "deviations.csv", "ledger.csv", "series.csv"};
+    ck_Random random = ck_random_seed(12);
+    int kills = 0, kept = 0;
+    finish(COMPARISON "%s/undisturbed", 0);
+    for (int i = 0; i < 20; i++) {
+        pid_t child = start(COMPARISON "%s/disturbed");
+        int status;
+        usleep((useconds_t)(400000 * ck_random_unit(&random)));
+        kill(child, i % 2 ? SIGKILL : SIGHUP);
+        waitpid(child, &status, 0);
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
+        kills++;
+        char *said = fixture_read("output");
+        kept += said && strstr(said, "as it was finished before the interruption") != NULL;
+        free(said);
+    }
+    finish(COMPARISON "%s/disturbed", 0);
+    print_message("%d kills, %d runs went on\n", kills, kept);
+    for (int i = 0; i < 4; i++) {
+        char one[60], other[60];
+        snprintf(one, sizeof one, "undisturbed/%s", files[i]);
+        snprintf(other, sizeof other, "disturbed/%s", files[i]);
+        assert_same(one, other);
+    }
+    assert_int_equal(size_of("disturbed/unfinished"), -1);
+    assert_true(size_of("disturbed/replays/slide_0.replay") == size_of("undisturbed/replays/slide_0.replay"));
+    assert_true(size_of("disturbed/replays/slide_0.replay") > 0);
+}
+
 static void test_shards(void **state) {
     (void)state;
     finish(STUDY "%s/1 --shard 1/4", 0);
@@ -301,10 +338,10 @@ static void test_bench(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),      cmocka_unit_test(test_kill),      cmocka_unit_test(test_shards),
-        cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),  cmocka_unit_test(test_needs),
-        cmocka_unit_test(test_bench),       cmocka_unit_test(test_demo),      cmocka_unit_test(test_half),
-        cmocka_unit_test(test_keeping),     cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_limits), cmocka_unit_test(test_kill),        cmocka_unit_test(test_kill_comparison),
+        cmocka_unit_test(test_shards), cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),
+        cmocka_unit_test(test_needs),  cmocka_unit_test(test_bench),       cmocka_unit_test(test_demo),
+        cmocka_unit_test(test_half),   cmocka_unit_test(test_keeping),     cmocka_unit_test(test_precision),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }
