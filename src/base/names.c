@@ -79,3 +79,21 @@ void ck_text_plain(char *text) {
     for (bool is_broken = *bytes; is_broken && *text; text++)
         if ((unsigned char)*text >= 0x80) *text = '?';
 }
+
+size_t ck_text_shell(char *out, size_t size, const char *word) {
+    bool is_plain = *word && !word[strspn(word, CK_PLAIN_LETTERS "/=:,+@%")], has_controls = false;
+    for (const char *letter = word; *letter; letter++) has_controls |= (unsigned char)*letter < 0x20 || *letter == 0x7f;
+    size_t used = (size_t)snprintf(out, size, "%s", is_plain ? "" : has_controls ? "$'" : "'");
+    for (const char *letter = word; *letter && used + 6 < size; letter++) {
+        const bool is_escaped = has_controls && strchr("\\'", *letter);
+        if ((unsigned char)*letter < 0x20 || *letter == 0x7f)
+            used += (size_t)snprintf(out + used, size - used, "\\x%02x", (unsigned char)*letter);
+        else if (*letter == '\'' && !has_controls)
+            // a quote ends the quotes, stands by itself, and begins them anew
+            used += (size_t)snprintf(out + used, size - used, "'\\''");
+        else
+            used += (size_t)snprintf(out + used, size - used, is_escaped ? "\\%c" : "%c", *letter);
+    }
+    if (!is_plain) used += (size_t)snprintf(out + used, size - used, "'");
+    return used;
+}

@@ -24,4 +24,8 @@ const char *ck_name_list(char *out, size_t size, ck_NameAt name_at, const void *
 // Source: RFC 3629.
 void ck_text_plain(char *text);
 
+// Writes a word as a shell reads it: plain where it can be, else in quotes, with control characters as $'\n' has them.
+// Returns how long that is, less than size, where what does not fit is cut off.
+size_t ck_text_shell(char *out, size_t size, const char *word);
+
 #endif

@@ -243,28 +243,24 @@ static pid_t start(void (*work)(void *), void *context, const ck_Limits *limits,
 ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *context, const ck_Limits *limits,
                        ck_Error *error) {
     *result = (ck_ChildResult){0};
-    Tail *tail = malloc(sizeof *tail);
-    if (!tail) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    tail->length = 0;
     int output = -1, wait_status = 0;
     struct rusage usage = {0};
     const pid_t child = start(work, context, limits, &output);
-    if (child < 0) {
-        free(tail);
-        return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
-    }
-    result->end = watch(child, output, tail, limits);
+    if (child < 0) return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+    Tail *tail = calloc(1, sizeof *tail);
+    result->end = tail ? watch(child, output, tail, limits) : CK_CHILD_ABORTED;
     // it is no longer waited for where it is stopped, and its group is its own as long as it is not waited for
     kill(-child, SIGKILL);
     kill(child, SIGKILL);
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
-    drain(tail, output);
+    if (tail) drain(tail, output);
     close(output);
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
     if (limits->spawns) end_strays(child);
-    describe(result, wait_status, limits, tail);
+    if (tail) describe(result, wait_status, limits, tail);
+    const bool has_tail = tail != NULL;
     free(tail);
-    return ck_child_check(error);
+    return has_tail ? ck_child_check(error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
 }
 
 typedef struct Crew {

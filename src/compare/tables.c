@@ -2,6 +2,7 @@
 
 #include "files.h"
 #include "metric.h"
+#include "names.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,10 +29,12 @@ static void write_command(char *out, size_t size, const ck_Comparison *compariso
                           const ck_CompareOptions *options) {
     const char *engine = run->engine->name;
     const ck_Outside *outside = run->engine->outside;
+    char path[2048];
+    ck_text_shell(path, sizeof path, comparison->path);
     size_t used = outside && outside->is_recorded
-                      ? (size_t)snprintf(out, size, "clothcheck score %s %s", comparison->path, outside->arguments)
-                  : outside ? (size_t)snprintf(out, size, "clothcheck run %s %s", comparison->path, outside->arguments)
-                            : (size_t)snprintf(out, size, "clothcheck run %s --engine %s", comparison->path, engine);
+                      ? (size_t)snprintf(out, size, "clothcheck score %s %s", path, outside->arguments)
+                  : outside ? (size_t)snprintf(out, size, "clothcheck run %s %s", path, outside->arguments)
+                            : (size_t)snprintf(out, size, "clothcheck run %s --engine %s", path, engine);
     if (run->status == CK_RUN_TOO_SLOW)
         used += (size_t)snprintf(out + used, size - used, " --patience %g", options->limits.patience);
     for (int i = 0; i < options->override_count; i++) {

@@ -36,7 +36,7 @@ const ck_Engine *ck_engine_find(const char *name) {
 
 ck_Status ck_engines_add(const ck_Engine *engine, ck_Error *error) {
     size_t length = strlen(engine->name);
-    if (!length || length > 40 || strspn(engine->name, CK_PLAIN_LETTERS) != length)
+    if (!length || length > 40 || *engine->name == '.' || strspn(engine->name, CK_PLAIN_LETTERS) != length)
         return ck_fail(error, CK_BAD_INPUT, "an engine cannot be named '%.60s': take at most 40 of " CK_PLAIN_LETTERS,
                        engine->name);
     if (!strcmp(engine->name, "truth") || ck_engine_find(engine->name))

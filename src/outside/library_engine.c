@@ -221,10 +221,7 @@ ck_Status ck_outside_library(ck_Engine **engine, const char *name, const char *p
     made->source = library;
     made->free_source = free_library;
     make_engine(made, library);
-    if (name)
-        ck_outside_option(made, name, path);
-    else
-        snprintf(made->arguments, sizeof made->arguments, "--engine '%.380s'", path);
+    ck_outside_option(made, name, path);
     *engine = &made->engine;
     return CK_OK;
 }

@@ -1,5 +1,7 @@
 #include "outside_engine.h"
 
+#include "names.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,14 +21,10 @@ ck_OutsideEngine *ck_outside_new(const char *name) {
 }
 
 void ck_outside_option(ck_OutsideEngine *made, const char *name, const char *line) {
-    char *out = made->arguments, *end = out + sizeof made->arguments - 6;
-    out += snprintf(out, sizeof made->arguments / 2, "--engine '%.60s=", name);
-    for (; *line && out < end; line++) {
-        // a quote ends the quotes, stands by itself, and begins them anew
-        if (*line == '\'') out = stpcpy(out, "'\\'");
-        *out++ = *line;
-    }
-    strcpy(out, "'");
+    char word[sizeof made->arguments];
+    snprintf(word, sizeof word, "%.60s%s%.300s", name ? name : "", name ? "=" : "", line);
+    const size_t used = (size_t)snprintf(made->arguments, sizeof made->arguments, "--engine ");
+    ck_text_shell(made->arguments + used, sizeof made->arguments - used, word);
 }
 
 void ck_outside_free(ck_Engine *engine) {

@@ -1,4 +1,5 @@
 // A recording as an engine: its path is found when it is read, and played frame by frame.
+#include "names.h"
 #include "outside_engine.h"
 #include "recording.h"
 
@@ -95,7 +96,9 @@ ck_Status ck_outside_recording(ck_Engine **engine, const char *name, const char 
     }
     snprintf(made->about, sizeof made->about, "a recording: %.140s", path);
     snprintf(made->version, sizeof made->version, "recorded");
-    size_t used = (size_t)snprintf(made->arguments, sizeof made->arguments, "--path %.250s --name %s", path, name);
+    char word[260];
+    ck_text_shell(word, sizeof word, path);
+    size_t used = (size_t)snprintf(made->arguments, sizeof made->arguments, "--path %s --name %s", word, name);
     if (!isnan(frame_cost))
         used += (size_t)snprintf(made->arguments + used, sizeof made->arguments - used, " --cost-ms %.17g",
                                  1e3 * frame_cost);

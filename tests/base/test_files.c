@@ -105,9 +105,27 @@ static void test_plain_text(void **state) {
     }
 }
 
+static void test_shell(void **state) {
+    (void)state;
+    static const char *const words[] = {"plain-1.yaml", "a b", "it's", "$(reboot)",   "a\nb",
+                                        "cr\r'\\",      "",    "*",    "caf\xc3\xa9", "--engine=x y"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        char word[100], command[200], said[100] = "";
+        ck_text_shell(word, sizeof word, words[i]);
+        // a row of a CSV has one line
+        assert_null(strpbrk(word, "\r\n"));
+        snprintf(command, sizeof command, "bash -c \"$(cat <<'END'\nprintf %%s %s\nEND\n)\"", word);
+        FILE *shell = popen(command, "r");
+        assert_non_null(shell);
+        said[fread(said, 1, sizeof said - 1, shell)] = 0;
+        assert_int_equal(pclose(shell), 0);
+        assert_string_equal(said, words[i]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_left_behind), cmocka_unit_test(test_discarded),
-                                       cmocka_unit_test(test_plain_text)};
+                                       cmocka_unit_test(test_plain_text), cmocka_unit_test(test_shell)};
     if (!mkdtemp(directory)) return 1;
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     rmdir(directory);

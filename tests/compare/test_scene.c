@@ -104,6 +104,7 @@ static const struct {
      ":5:72:", "from 0 to 1"},
     {"collider of no shape", ROPE TIME "colliders: [{}]\n",
      ":5:13:", "none of plane, sphere, capsule, cylinder and box"},
+    {"hidden name", "name: .r\nrope: {particles: 3, spacing: 1, mass: 1}\n" TIME, ":1:7:", "begins with a dot"},
     {"capsule without length", ROPE TIME "colliders: [{capsule: {from: [0, 9, 0], to: [0, 9, 0], radius: 1}}]\n",
      ":5:", "a sphere has its place as center"},
     {"axis without direction", ROPE TIME "colliders: [{cylinder: {point: [0, 9, 0], axis: [0, 0, 0], radius: 1}}]\n",

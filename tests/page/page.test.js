@@ -255,10 +255,29 @@ test("the replay holds the runs' positions", async () => {
 
 test("a collider that moves is where its path takes it", async () => {
 	const places = await page.evaluate(() => {
-		const { spheres: [ball], planes: [floor] } = parseHeader("plane 0 0 0 0 1 0\nsphere 1 2 3 0.5\nmoves 0 0 0 0 1 0 2 0 2 0 2 4\ndata\n");
+		const { solids: [ball], planes: [floor] } = parseHeader("plane 0 0 0 0 1 0\nsphere 1 2 3 0.5\nmoves 0 0 0 0 1 0 2 0 2 0 2 4\ndata\n");
 		return [floor.moves ?? null, movedAt(ball.moves, 0.25), movedAt(ball.moves, 1.5), movedAt(ball.moves, 9)];
 	});
 	assert.deepEqual(places, [null, [0, 0.5, 0], [0, 2, 2], [0, 2, 4]]);
+});
+
+test("a solid is drawn where it is, as large as it is", async () => {
+	const sizes = await page.evaluate(() => {
+		// along y, half of 2 m long
+		const axes = "0 1 0 -1 0 0 0 0 1";
+		const lines = [`capsule 1 2 3 0.5 ${axes} 1 0 0`, `cylinder 1 2 3 0.5 ${axes} 1 0 0`, `box 1 2 3 0.25 ${axes} 1 0.5 2`, "sphere 1 2 3 0.5"];
+		const { solids } = parseHeader(`${lines.join("\n")}\ndata\n`);
+		const group = makeColliders({ planes: [], solids, particles: 1, paths: new Map([["a", new Float32Array([0, 0, 0, 1, 1, 1])]]) });
+		group.updateMatrixWorld(true);
+		return group.children.map((solid) => {
+			const box = new THREE.Box3().setFromObject(solid);
+			return [...box.getCenter(new THREE.Vector3()).toArray(), ...box.getSize(new THREE.Vector3()).toArray()];
+		});
+	});
+	// what is round is drawn a hundredth thinner, of flat facets
+	const wanted = [[1, 2, 3, 1, 3, 1], [1, 2, 3, 1, 2, 1], [1, 2, 3, 1.5, 2.5, 4.5], [1, 2, 3, 1, 1, 1]];
+	for (const [i, size] of wanted.entries())
+		for (const [k, number] of size.entries()) assert.ok(Math.abs(sizes[i][k] - number) <= 0.03, `${i}: ${sizes[i]}`);
 });
 
 // What the replay shows, and how many of its pixels are not paper.

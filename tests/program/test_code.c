@@ -85,7 +85,7 @@ static void test_usage(void **state) {
     assert_int_equal(fixture_program("code rope_hanging -e native-verlet"), 2);
     fixture_assert_output("native-verlet has no program to paste; these have: bullet-pbd");
     assert_int_equal(fixture_program("code pendulum -e bullet-implicit"), 1);
-    fixture_assert_output("bullet-implicit does not model all that pendulum has");
+    fixture_assert_output("bullet-implicit does not model rigid bars");
 }
 
 // A recording joins a comparison that is there, and nothing is lost.

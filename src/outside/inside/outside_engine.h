@@ -15,7 +15,7 @@ typedef struct ck_OutsideEngine {
 // With a name of its own, and of everything else nothing. NULL when out of memory.
 ck_OutsideEngine *ck_outside_new(const char *name);
 
-// Notes how a command line names it: --engine 'NAME=LINE', in quotes for a shell.
+// Notes how a command line names it: --engine NAME=LINE, or LINE alone where name is NULL, in quotes for a shell.
 void ck_outside_option(ck_OutsideEngine *made, const char *name, const char *line);
 
 #endif

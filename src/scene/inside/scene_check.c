@@ -99,6 +99,9 @@ static ck_Status check_text(const Check *check, yaml_node_t *node, const cyaml_s
             return ck_document_fail(
                 check->document, node, check->error,
                 "name has a letter that is not plain; it must be made of letters, digits, _, - and .");
+    // files that begin so are hidden
+    if (!strcmp(path, "name") && *text == '.')
+        return ck_document_fail(check->document, node, check->error, "name begins with a dot; begin it with a letter");
     if (strlen(text) < schema->string.min || strlen(text) > schema->string.max)
         return ck_document_fail(check->document, node, check->error, "%s has %zu characters; it must have %u to %u",
                                 path, strlen(text), schema->string.min, schema->string.max);
