@@ -16,6 +16,18 @@ struct ck_Wave;
 typedef void ck_ExplicitStart(const struct ck_ExplicitCloth *cloth, int row);
 // One row's part of a substep; see spring_loop.h.
 typedef void ck_ExplicitRow(const struct ck_ExplicitCloth *cloth, int row, bool advances);
+// A surface that particles may come to touch: a half-space, or what is no farther than a radius from a core, a point, a
+// line or a box of half lengths along axes.
+typedef struct ck_NearSurface {
+    bool is_plane;
+    int axis_count;
+    double point[3], normal[3], axes[3][3], half[3], radius; // m
+    double margin; // m, closer than which is touching, and how far it moves in a substep
+} ck_NearSurface;
+
+// Which particles of a row may come to touch one within a substep; see near_loop.c.
+typedef int ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
+                       double *near, int *vectors);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionWave(const struct ck_ProjectedCloth *cloth, const struct ck_Wave *wave);
 // Products with a sum each, as many as it can a second; returns how many there were.
@@ -27,6 +39,7 @@ typedef struct ck_Loops {
     bool fuses;
     ck_ExplicitStart *explicit_start;
     ck_ExplicitRow *explicit_row;
+    ck_NearRow *near_row;
     ck_ProjectionWave *projection_wave;
     ck_Peak *peak;
 } ck_Loops;

@@ -39,6 +39,55 @@ void ck_explicit_step(ck_ExplicitCloth *cloth, uint32_t substeps, ck_Waves *wave
                                        cloth->rows.rows + reach * (cloth->depth - 1), reach * cloth->depth});
 }
 
+void ck_explicit_drift(ck_ExplicitCloth *cloth) {
+    for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 0, row);
+}
+
+void ck_explicit_kick(ck_ExplicitCloth *cloth) {
+    cloth->substeps = 1;
+    for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 1, row);
+}
+
+int ck_explicit_find_near(const ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int count, int *particles) {
+    const ck_Rows *rows = &cloth->rows;
+    int found = 0;
+    for (int row = 0; row < rows->rows; row++) {
+        int vectors = cloth->loops->near_row(cloth, row, surfaces, count, cloth->near, cloth->near_vectors);
+        for (int i = 0; i < vectors; i++)
+            for (int lane = 0; lane < CK_STRIPE; lane++) {
+                const int vector = cloth->near_vectors[i], column = lane * rows->span + vector;
+                const long single = ck_rows_place(rows, row, vector).single + lane;
+                if (column < rows->columns && cloth->near[vector * CK_STRIPE + lane] > 0 && cloth->gain[single] > 0)
+                    particles[found++] = row * rows->columns + column;
+            }
+    }
+    return found;
+}
+
+static long tile_of(const ck_ExplicitCloth *cloth, int particle) {
+    return ck_rows_at(&cloth->rows, particle / cloth->rows.columns, particle % cloth->rows.columns).tile;
+}
+
+void ck_explicit_take(const ck_ExplicitCloth *cloth, int particle, double *position, double *velocity,
+                      double *acceleration) {
+    const long tile = tile_of(cloth, particle);
+    for (int axis = 0; axis < 3; axis++) {
+        position[axis] = cloth->x[tile + axis * CK_STRIPE];
+        velocity[axis] = cloth->v[tile + axis * CK_STRIPE];
+        acceleration[axis] = cloth->a[tile + axis * CK_STRIPE];
+    }
+}
+
+void ck_explicit_put(const ck_ExplicitCloth *cloth, int particle, const double *velocity, const double *position,
+                     const double *predicted) {
+    const long tile = tile_of(cloth, particle);
+    for (int axis = 0; axis < 3; axis++) {
+        cloth->v[tile + axis * CK_STRIPE] = velocity[axis];
+        if (position) cloth->x[tile + axis * CK_STRIPE] = position[axis];
+        if (predicted) cloth->predicted[tile + axis * CK_STRIPE] = predicted[axis];
+    }
+}
+
 void ck_explicit_read(const ck_ExplicitCloth *cloth, double *position, double *velocity) {
     ck_rows_store(&cloth->rows, position, cloth->x);
     ck_rows_store(&cloth->rows, velocity, cloth->v);
@@ -48,6 +97,7 @@ void ck_explicit_destroy(ck_ExplicitCloth *cloth) {
     if (!cloth) return;
     free(cloth->state);
     free(cloth->pairs);
+    free(cloth->near_vectors);
     free(cloth);
 }
 
@@ -73,8 +123,9 @@ ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, cons
         cloth->slack[kind] = springs->stiffness[kind] * springs->rest[kind];
     const ck_Rows row = {.size = (size_t)cloth->rows.stride};
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
-    cloth->pairs = ck_rows_allocate(&row, 2);
-    if (!cloth->state || !cloth->pairs) {
+    cloth->pairs = ck_rows_allocate(&row, 3);
+    cloth->near_vectors = malloc((size_t)cloth->rows.span * sizeof *cloth->near_vectors);
+    if (!cloth->state || !cloth->pairs || !cloth->near_vectors) {
         ck_explicit_destroy(cloth);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
@@ -86,6 +137,7 @@ ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, cons
     cloth->gain = cloth->state + 12 * size;
     cloth->paired = cloth->pairs;
     cloth->far_paired = cloth->pairs + row.size;
+    cloth->near = cloth->pairs + 2 * row.size;
     ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
     ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
     ck_rows_load(&cloth->rows, cloth->x, position);

@@ -384,9 +384,29 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
     add_impulse(contact, mass, free_flight, v);
 }
 
+// What lies still on one collider that stays and is held by friction goes nowhere in the substep: most of what has come
+// to rest. Deeper than rounding it is not looked at here.
+static bool rests(const ck_Contact *contact, const double *x, const double *v, const double *a) {
+    const ck_Collider *carrier = NULL;
+    double normal[3], out[3], pull = ck_dot(a, a);
+    if (v[0] != 0 || v[1] != 0 || v[2] != 0) return false;
+    for (int i = 0; i < contact->model->collider_count; i++) {
+        const ck_Collider *collider = &contact->model->colliders[i];
+        const double gap = ck_collider_gap(collider, x, out);
+        if (gap > contact->slack && gap > 0.5 * contact->dt * contact->dt * sqrt(pull)) continue;
+        if (carrier || gap > contact->slack || gap < -1e-6 * contact->slack) return false;
+        carrier = collider;
+        memcpy(normal, out, sizeof normal);
+    }
+    const double press = carrier ? -ck_dot(a, normal) : 0;
+    return press > 0 && pull - press * press <= carrier->friction * carrier->friction * press * press;
+}
+
 void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, const double *a) {
     if (contact->motion)
         advance(contact, mass, x, v, a, true);
+    else if (rests(contact, x, v, a))
+        ck_add_scaled(contact->impulse, -mass * contact->dt, a);
     else
         advance(contact, mass, x, v, a, false);
 }

@@ -6,6 +6,7 @@
 #include "spring_kernel.h"
 #include "time_scale.h"
 #include "vector.h"
+#include "verlet_contact.h"
 #include "wind.h"
 
 #include <stdlib.h>
@@ -135,15 +136,17 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     return CK_OK;
 }
 
-// A regular cloth without colliders runs in rows; native then holds its state at the end of a frame.
+// A regular cloth runs in rows; native then holds its state at the end of a frame.
 typedef struct Verlet {
     ck_Native *native;
-    ck_ExplicitCloth *cloth; // NULL: the list of springs
+    ck_ExplicitCloth *cloth;   // NULL: the list of springs
+    ck_VerletContact *contact; // of a cloth in rows; NULL without colliders
 } Verlet;
 
 static void destroy(void *state) {
     Verlet *verlet = state;
     ck_explicit_destroy(verlet->cloth);
+    ck_verlet_contact_destroy(verlet->contact);
     ck_native_destroy(verlet->native);
     free(verlet);
 }
@@ -157,7 +160,11 @@ static ck_Status start(Verlet *verlet, ck_Error *error) {
     accelerate(native, native->acceleration);
     ck_explicit_destroy(verlet->cloth);
     verlet->cloth = NULL;
-    if (native->contact || !ck_rows_fit(model, &springs)) return CK_OK;
+    if (!ck_rows_fit(model, &springs)) return CK_OK;
+    if (!verlet->contact) {
+        ck_Status status = ck_verlet_contact_create(&verlet->contact, native, error);
+        if (status) return status;
+    }
     return ck_explicit_create(&verlet->cloth, ck_native_loops(native), model, &springs, native->dt, native->position,
                               native->velocity, native->acceleration, native->inverse_mass, error);
 }
@@ -187,11 +194,15 @@ static void release(void *state, int particle) {
 static ck_StepResult step(void *state) {
     Verlet *verlet = state;
     ck_Native *native = verlet->native;
-    if (verlet->cloth) {
+    ck_native_start_frame(native);
+    if (verlet->cloth && native->contact) {
+        for (uint32_t i = 0; i < native->substeps; i++)
+            ck_verlet_contact_substep(verlet->contact, native, verlet->cloth);
+        ck_explicit_read(verlet->cloth, native->position, native->velocity);
+    } else if (verlet->cloth) {
         ck_explicit_step(verlet->cloth, native->substeps, native->waves);
         ck_explicit_read(verlet->cloth, native->position, native->velocity);
     } else {
-        ck_native_start_frame(native);
         for (uint32_t i = 0; i < native->substeps; i++) substep(native);
     }
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
@@ -254,9 +265,8 @@ const ck_Engine ck_native_verlet = {
 static ck_Status create_narrow(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                                ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
-    if (model->collider_count || !ck_rows_fit(model, &springs))
-        return ck_fail(error, CK_REFUSED,
-                       "is native-verlet: only regular cloths without colliders are stepped in vectors");
+    if (!ck_rows_fit(model, &springs))
+        return ck_fail(error, CK_REFUSED, "is native-verlet: only regular cloths are stepped in vectors");
     ck_Settings narrow = *wanted;
     ck_settings_set(&narrow, CK_OWN + CK_NATIVE_VECTORS, 2);
     return create(state, model, &narrow, used, ledger, error);

@@ -222,11 +222,18 @@ static void test_horizon(void **state) {
 
 // Beyond the horizon of a path nobody knows where the body is. What is still said of it there holds other paths, of
 // nudges that the truth has not seen: nine in ten of them, as an ensemble of eight can promise.
+// The sanitizers, which make it ten times as slow, see one start.
+#ifdef __SANITIZE_ADDRESS__
+#define STARTS 1
+#else
+#define STARTS 4
+#endif
+
 static void test_ensemble(void **state) {
     (void)state;
     static const char *const names[] = {"sag", "stretch_max", "stretch_rms"};
     int tries = 0, outside = 0;
-    for (int noise = 1; noise <= 4; noise++) {
+    for (int noise = 1; noise <= STARTS; noise++) {
         char scene[500];
         snprintf(scene, sizeof scene,
                  "name: wild\nrope: {particles: 12, spacing: 0.1, mass: 1, along: [1, 0.3, 0]}\nsprings: "
@@ -252,7 +259,7 @@ static void test_ensemble(void **state) {
         fixture_free_truth(&fixture);
     }
     print_message("%d of %d are outside\n", outside, tries);
-    assert_true(tries == 72 && outside <= tries / 10);
+    assert_true(tries == 18 * STARTS && outside <= tries / 10);
 }
 
 // Bars exactly as long as what they span have one place, and it is known.

@@ -4,6 +4,7 @@
 
 ck_ExplicitStart CK_LOOP(ck_explicit_start);
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
+ck_NearRow CK_LOOP(ck_near_row);
 ck_ProjectionWave CK_LOOP(ck_projection_wave);
 ck_Peak CK_LOOP(ck_peak);
 
@@ -14,6 +15,7 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .fuses = CK_FUSES,
     .explicit_start = CK_LOOP(ck_explicit_start),
     .explicit_row = CK_LOOP(ck_explicit_row),
+    .near_row = CK_LOOP(ck_near_row),
     .projection_wave = CK_LOOP(ck_projection_wave),
     .peak = CK_LOOP(ck_peak),
 };
