@@ -172,6 +172,11 @@ static void end_row(int end, void *context) {
     reader->column = 0;
 }
 
+static bool has_return(const char *line, size_t length) {
+    const char *found = memchr(line, '\r', length);
+    return found && found != line + length - 2;
+}
+
 // Line by line, so that an error knows where it is.
 static ck_Status read_csv(Reader *reader, const char *bytes, size_t size) {
     struct csv_parser parser;
@@ -183,6 +188,10 @@ static ck_Status read_csv(Reader *reader, const char *bytes, size_t size) {
         reader->line++;
         if (memchr(bytes + at, 0, length))
             reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: there is a zero byte",
+                                     reader->recording->path, reader->line);
+        // one before the newline is how some systems end a line; another would end a row within it
+        else if (has_return(bytes + at, length))
+            reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: there is a carriage return within the line",
                                      reader->recording->path, reader->line);
         else if (csv_parse(&parser, bytes + at, length, take_field, end_row, reader) != length)
             reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: column %d: %s", reader->recording->path,

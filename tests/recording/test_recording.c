@@ -170,6 +170,7 @@ static const struct {
     {HEADER, "holds no positions"},
     {"time,particle,x,y,z\n0,0,0,0,0\n", ":1: the header has no column time_s; it must have time_s, particle, x, y"},
     {"time_s,particle,x,y\n0,0,0,0\n", ":1: the header has no column z"},
+    {"time_s,x0,y0,z0,\r\rvzy\rv,2,2\n", ":1: there is a carriage return within the line"},
     {"time_s,particle,x,y,z,x\n0,0,0,0,0,0\n", ":1: the header has twice the column x"},
     {"time_s,particle,x,y,z,vx\n0,0,0,0,0,0\n", ":1: the header has no column vy"},
     {"time_s,x0,y0,z0,x2,y2,z2\n", ":1: the header has no column x1"},
