@@ -104,6 +104,12 @@ static void write_collider(FILE *out, const ck_Model *model, int index, const ck
     const double plane[3] = {0, 0, 1}, ball[3] = {radius, 0, 0}, capsule[3] = {radius, length, 0},
                  box[3] = {collider->half[0] + radius, collider->half[1] + radius, collider->half[2] + radius};
     double sunk[3] = {collider->point[0], collider->point[1], collider->point[2]};
+    // what has no end is written where the body is
+    for (int i = 0; i < model->particle_count && collider->shape == CK_CYLINDER; i++) {
+        double from[3];
+        ck_subtract(from, model->position + 3 * i, collider->point);
+        ck_add_scaled(sunk, ck_dot(from, collider->axes[0]) / model->particle_count, collider->axes[0]);
+    }
     if (collider->path) write_moving(out, model, index);
     if (collider->shape == CK_PLANE) {
         ck_add_scaled(sunk, -options->radius, collider->normal);
@@ -111,7 +117,7 @@ static void write_collider(FILE *out, const ck_Model *model, int index, const ck
     } else if (collider->shape == CK_SPHERE) {
         write_geom(out, collider, options, "sphere", collider->point, ball, NULL);
     } else if (collider->shape != CK_BOX) {
-        write_geom(out, collider, options, "capsule", collider->point, capsule, collider->axes[0]);
+        write_geom(out, collider, options, "capsule", sunk, capsule, collider->axes[0]);
     } else if (radius > 0) {
         write_box(out, collider, options, radius);
     } else {
@@ -159,8 +165,16 @@ static void write_springs(FILE *out, const ck_Model *model) {
     fprintf(out, "</tendon>\n");
 }
 
+// How many contacts there may be: a particle at a corner of a rounded box touches three of its pieces, or more where
+// they are thin.
+static int most_contacts(const ck_Model *model) {
+    int most = 0;
+    for (int i = 0; i < model->collider_count; i++) most += model->colliders[i].shape == CK_BOX ? 6 : 1;
+    return most * model->particle_count;
+}
+
 int ck_mujoco_stack(const ck_Model *model, const char *integrator) {
-    const double joints = 3.0 * model->particle_count, rows = joints * model->collider_count;
+    const double joints = 3.0 * model->particle_count, rows = 3.0 * most_contacts(model);
     double numbers = 1e6 + 4e3 * model->particle_count;
     if (!strcmp(integrator, "implicit")) numbers += 10 * joints * model->spring_count;
     if (rows > 0) numbers += (joints + rows) * (joints + rows);
@@ -176,9 +190,8 @@ char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size
             "<mujoco><compiler boundmass=\"0\" boundinertia=\"0\" autolimits=\"true\"/>\n<option timestep=\"%.17g\" "
             "gravity=\"%.17g %.17g %.17g\" integrator=\"%s\" jacobian=\"sparse\" cone=\"elliptic\" tolerance=\"0\" "
             "iterations=\"100\"/>\n<size njmax=\"%d\" nconmax=\"%d\" nstack=\"%d\"/>\n<worldbody>\n",
-            options->step, g[0], g[1], g[2], options->integrator,
-            10 + 3 * model->particle_count * model->collider_count, 10 + model->particle_count * model->collider_count,
-            ck_mujoco_stack(model, options->integrator));
+            options->step, g[0], g[1], g[2], options->integrator, 10 + 3 * most_contacts(model),
+            10 + most_contacts(model), ck_mujoco_stack(model, options->integrator));
     for (int i = 0; i < model->collider_count; i++) write_collider(out, model, i, options);
     for (int i = 0; i < model->particle_count; i++) write_particle(out, model, i, options);
     fprintf(out, "</worldbody>\n");

@@ -83,19 +83,18 @@ int ck_path_make(const char *directory) {
 }
 
 // True for NAME.NUMBER.part, what a file is called until it is whole.
-static bool is_part(const char *name) {
-    const char *end = strrchr(name, '.');
-    if (!end || strcmp(end, ".part") || end == name) return false;
-    const char *digit = end - 1;
-    while (digit > name && *digit >= '0' && *digit <= '9') digit--;
-    return digit > name && *digit == '.' && digit < end - 1;
+static bool is_part(const char *part, const char *name) {
+    const size_t length = strlen(name);
+    if (strncmp(part, name, length) || part[length] != '.') return false;
+    const size_t digits = strspn(part + length + 1, "0123456789");
+    return digits && !strcmp(part + length + 1 + digits, ".part");
 }
 
-// Removes what processes that were killed have left half written: nobody holds its lock any more.
-static void sweep(const char *directory) {
+// Removes what processes that were killed have left of a file half written: nobody holds its lock any more.
+static void sweep(const char *directory, const char *name) {
     DIR *folder = opendir(directory);
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        if (!is_part(entry->d_name)) continue;
+        if (!is_part(entry->d_name, name)) continue;
         const int left = openat(dirfd(folder), entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (left < 0) continue;
         if (!flock(left, LOCK_EX | LOCK_NB)) unlinkat(dirfd(folder), entry->d_name, 0);
@@ -125,7 +124,7 @@ ck_Status ck_whole_file_open(ck_WholeFile *whole, const char *directory, const c
     if (!whole->path || !whole->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-    sweep(directory);
+    sweep(directory, name);
     const int file = open_locked(whole->part);
     whole->file = file >= 0 ? fdopen(file, "wb") : NULL;
     if (!whole->file) ck_fail(error, CK_IO, "%s: %s", whole->part, strerror(errno));

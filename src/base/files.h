@@ -47,7 +47,7 @@ static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
 }
 
 // A file that appears whole or not at all: written beside its name under a lock, then renamed. What killed processes
-// have left of theirs in a directory is removed when the next is begun there.
+// have left of it is removed when it is begun again.
 typedef struct ck_WholeFile {
     FILE *file;        // to write to
     char *path, *part; // the name it gets, and the one it is written under

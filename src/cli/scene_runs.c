@@ -108,7 +108,13 @@ static char *question_of(const ck_Arguments *arguments, const ck_Comparison *com
     uint64_t scenes = CK_HASH_START;
     char *question;
     for (int i = 0; i < count; i++)
-        scenes = ck_hash(scenes, comparisons[i].scene.document.text, comparisons[i].scene.document.length);
+        // and what its files hold, which are in the model
+        scenes = ck_hash(scenes, comparisons[i].scene.document.text, comparisons[i].scene.document.length) ^
+                 ck_model_hash(&comparisons[i].model);
+    for (int i = 0; i < arguments->options.engine_count; i++) {
+        const char *version = ck_engine_version(arguments->options.engines[i]);
+        scenes = ck_hash(scenes, version, strlen(version));
+    }
     return asprintf(&question, "%s\t(%d scenes %016llx, clothcheck %s)\n", arguments->question, count,
                     (unsigned long long)scenes, CK_VERSION) < 0
                ? NULL
@@ -140,10 +146,12 @@ ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *err
         status = ck_comparison_load(&comparisons[count], arguments->scenes[count], error);
     if (!status) status = check_names(comparisons, count, error);
     ck_Keeping keeping = arguments->forces ? CK_KEEP_NONE : arguments->appends ? CK_KEEP_OTHERS : CK_KEEP_OR_FAIL;
+    if (!status) status = open_unfinished(&unfinished, arguments, comparisons, count, error);
+    // one that was killed while it gave its files their names goes on, whatever has them by now
+    if (unfinished.kept == count && keeping == CK_KEEP_OR_FAIL) keeping = CK_KEEP_NONE;
     if (!status && arguments->out)
         status = ck_tables_open(&tables, arguments->out, keeping, arguments->by_engine, comparisons, count,
                                 &arguments->options, error);
-    if (!status) status = open_unfinished(&unfinished, arguments, comparisons, count, error);
     if (!status) status = run_all(comparisons, arguments, &tables, &unfinished, show, error);
     if (!status && arguments->out) status = ck_tables_close(&tables, error);
     if (!status) status = ck_unfinished_finish(&unfinished, error);

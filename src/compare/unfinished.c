@@ -11,9 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #define QUESTION "question"
+#define SCENES "scenes"
 
 static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *at) {
     (void)about, (void)kind;
@@ -26,13 +29,31 @@ static void empty(const char *directory) {
     nftw(directory, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-static int count_scenes(const char *directory) {
+// How many names a folder has, but for one.
+static int count_names(const char *directory, const char *but) {
     int count = 0;
-    DIR *folder = opendir(directory);
+    DIR *folder = directory ? opendir(directory) : NULL;
     for (struct dirent *entry; folder && (entry = readdir(folder));)
-        count += *entry->d_name != '.' && strcmp(entry->d_name, QUESTION) && strcmp(entry->d_name, CK_REPLAY_DIRECTORY);
+        count += *entry->d_name != '.' && strcmp(entry->d_name, but);
     if (folder) closedir(folder);
     return count;
+}
+
+static int count_scenes(const char *directory) {
+    char *scenes = ck_path_join(directory, SCENES);
+    const int count = count_names(scenes, "");
+    free(scenes);
+    return count;
+}
+
+// The workers of a comparison that was killed hold its lock until they are dead, too.
+static bool lock(int file) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    for (int tries = 0; tries < 100; tries++) {
+        if (!flock(file, LOCK_EX | LOCK_NB)) return true;
+        nanosleep(&pause, NULL);
+    }
+    return false;
 }
 
 static bool is_asked(int file, const char *question) {
@@ -51,7 +72,16 @@ ck_Status ck_unfinished_open(ck_Unfinished *unfinished, const char *out, const c
     int failed = path ? ck_path_make(unfinished->directory) : ENOMEM;
     if (!failed && (unfinished->question = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666)) < 0) failed = errno;
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s/unfinished: %s", out, strerror(failed)) : CK_OK;
-    if (!status && flock(unfinished->question, LOCK_EX | LOCK_NB))
+    // a folder of that name that is somebody else's is not ours to empty
+    struct stat about;
+    if (!status && !fstat(unfinished->question, &about) && !about.st_size &&
+        count_names(unfinished->directory, QUESTION)) {
+        status = ck_fail(error, CK_BAD_INPUT,
+                         "%s: is no folder of an unfinished comparison; give another --out, or move it away",
+                         unfinished->directory);
+        unlink(path);
+    }
+    if (!status && !lock(unfinished->question))
         status = ck_fail(error, CK_BAD_INPUT, "%s: another comparison is running there; give another --out", out);
     if (!status && !is_asked(unfinished->question, question)) {
         *dropped = count_scenes(unfinished->directory);
@@ -66,7 +96,10 @@ ck_Status ck_unfinished_open(ck_Unfinished *unfinished, const char *out, const c
 }
 
 static char *folder_of(const ck_Unfinished *unfinished, const ck_Comparison *comparison) {
-    return ck_path_join(unfinished->directory, comparison->model.name);
+    char *scenes = ck_path_join(unfinished->directory, SCENES),
+         *folder = scenes ? ck_path_join(scenes, comparison->model.name) : NULL;
+    free(scenes);
+    return folder;
 }
 
 bool ck_unfinished_take(const ck_Unfinished *unfinished, const ck_Comparison *comparison, ck_Tables *tables) {

@@ -5,7 +5,7 @@
 
 #include "tables.h"
 
-// OUT/unfinished: question, which is locked, a folder of CSVs a scene, and replays.
+// OUT/unfinished: question, which is locked, scenes, with a folder of CSVs each, and replays.
 typedef struct ck_Unfinished {
     char *directory; // NULL: nothing is kept
     const char *out;

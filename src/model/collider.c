@@ -44,6 +44,18 @@ static double face_gap(const ck_Collider *collider, const double *from, double *
 // Apart, so that planes and balls do not pay for its registers.
 __attribute__((noinline)) static double solid_gap(const ck_Collider *collider, const double *from, double *normal) {
     double out[3] = {from[0], from[1], from[2]};
+    int beyond = 0, last = 0;
+    for (int k = 0; k < 3 && is_box(collider); k++) {
+        if (!(fabs(local_of(collider, k, from)) > collider->half[k])) continue;
+        beyond++;
+        last = k;
+    }
+    // off one face the way out is known, whatever a difference of rounded places points to
+    if (beyond == 1) {
+        const double local = local_of(collider, last, from), sign = local < 0 ? -1 : 1;
+        for (int axis = 0; axis < 3; axis++) normal[axis] = sign * collider->axes[last][axis];
+        return fabs(local) - collider->half[last] - collider->radius;
+    }
     for (int k = 0; k < 3; k++) {
         const double local = local_of(collider, k, from);
         if (collider->half[k] > 0)

@@ -168,6 +168,9 @@ ck_Status ck_model_build(ck_Model *model, const struct ck_Scene *scene, ck_Error
 // Accepts a zeroed model.
 void ck_model_free(ck_Model *model);
 
+// A hash of all numbers that a model's motion depends on, whatever files they came from.
+uint64_t ck_model_hash(const ck_Model *model);
+
 // Gives a copy of a model springs of its own, [spring_count], of factor times the stiffness.
 void ck_model_scale_stiffness(ck_Model *copy, ck_Spring *springs, double factor);
 

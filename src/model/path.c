@@ -30,7 +30,7 @@ static int point_before(const ck_Path *path, double time, int side) {
 // Hermite's cubic over the share s of the way from one point to the next.
 static void along_points(const ck_Path *path, double time, int side, double *moved, double *velocity,
                          double *acceleration) {
-    const int i = point_before(path, time, side);
+    const int i = point_before(path, time + side * path->slack, side);
     const double *p = path->points[i], *q = path->points[i + 1], span = q[0] - p[0], s = (time - p[0]) / span;
     for (int axis = 0; axis < 3; axis++) {
         const double m = span * slope_at(path, i, axis), n = span * slope_at(path, i + 1, axis);

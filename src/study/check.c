@@ -187,7 +187,7 @@ bool ck_check_add(const ck_CheckCase *one, const ck_JournalRow *row, double seco
     for (int i = 0; i <= ck_metric_count(); i++) {
         // a run that measures nothing has one row, for its status
         bool is_bare = i == ck_metric_count();
-        if (is_bare ? has_any : isnan(row->values[value_at(i)]) || isnan(row->values[band_at(i)])) continue;
+        if (is_bare ? has_any : isnan(row->values[value_at(i)]) || !isfinite(row->values[band_at(i)])) continue;
         has_any = true;
         ck_BaselineRow made = {.value = is_bare ? NAN : row->values[value_at(i)],
                                .band = is_bare ? NAN : row->values[band_at(i)]};

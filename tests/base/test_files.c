@@ -47,27 +47,29 @@ static void test_left_behind(void **state) {
     }
     assert_int_equal(read(ready[0], &byte, 1), 1);
     snprintf(name, sizeof name, "a.csv.%d.part", (int)other);
-    touch("old.csv.1.part");
+    touch("a.csv.1.part");
+    touch("film.001.part");
     touch("mine.part");
     touch("notes.x1.part");
     for (int killed = 0; killed <= 1; killed++) {
         if (killed) kill(other, SIGKILL);
         if (killed) waitpid(other, NULL, 0);
         assert_true(is_there(name));
-        assert_int_equal(ck_whole_file_open(&whole, directory, "b.csv", NULL), CK_OK);
+        assert_int_equal(ck_whole_file_open(&whole, directory, "a.csv", NULL), CK_OK);
         fputs("all rows", whole.file);
-        assert_true(is_there("b.csv") == killed);
+        assert_true(is_there("a.csv") == killed);
         assert_int_equal(ck_whole_file_close(&whole, NULL), CK_OK);
-        assert_true(is_there("b.csv"));
-        // who writes keeps its file, whoever begins beside it
+        assert_true(is_there("a.csv"));
+        // who writes keeps its file, whoever begins the same
         assert_true(is_there(name) == !killed);
-        assert_false(is_there("old.csv.1.part"));
+        assert_false(is_there("a.csv.1.part"));
     }
     // names of others are not ours to remove
-    assert_true(is_there("mine.part") && is_there("notes.x1.part"));
+    assert_true(is_there("mine.part") && is_there("notes.x1.part") && is_there("film.001.part"));
     drop("mine.part");
     drop("notes.x1.part");
-    drop("b.csv");
+    drop("film.001.part");
+    drop("a.csv");
 }
 
 static void test_discarded(void **state) {

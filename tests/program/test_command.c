@@ -186,6 +186,24 @@ static void test_interrupt(void **state) {
     }
 }
 
+// A folder of that name that is not ours stays as it is; a scene may be called as our files are.
+static void test_folder_of_others(void **state) {
+    (void)state;
+    char command[900];
+    snprintf(
+        command, sizeof command,
+        "cd %s && mkdir -p mine/unfinished && echo precious >mine/unfinished/work && %s compare %s/oscillator.yaml "
+        "%s/bounce.yaml --engine still --repeats 0 --out mine 2>&1 | grep -q 'is no folder of an unfinished "
+        "comparison' "
+        "&& grep -q precious mine/unfinished/work && sed 's/^name: .*/name: question/' %s/oscillator.yaml >q.yaml && "
+        "sed 's/^name: .*/name: replays/' %s/bounce.yaml >r.yaml && %s compare q.yaml r.yaml --engine still --repeats "
+        "0 "
+        "--out named >/dev/null && test -s named/replays/question.replay && test ! -e named/unfinished && "
+        "test -z \"$(find named/replays -type d -mindepth 1)\"",
+        fixture_directory, PROGRAM, SCENE_DIRECTORY, SCENE_DIRECTORY, SCENE_DIRECTORY, SCENE_DIRECTORY, PROGRAM);
+    assert_int_equal(system(command), 0);
+}
+
 // Whoever reads what is printed may go, as head does: the results are there all the same, and the status says it.
 static void test_reader_gone(void **state) {
     (void)state;
@@ -339,6 +357,7 @@ int main(void) {
         cmocka_unit_test(test_comparison_repeats),
         cmocka_unit_test(test_interrupt),
         cmocka_unit_test(test_reader_gone),
+        cmocka_unit_test(test_folder_of_others),
         cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_update_keeps),
         cmocka_unit_test(test_no_baseline),

@@ -42,6 +42,31 @@ static void test_gap_is_the_distance(void **state) {
     fixture_free(&fixture);
 }
 
+// Off a sharp face by what rounding makes, the way out is still the face's own.
+static void test_normal_of_a_face(void **state) {
+    (void)state;
+    Fixture fixture;
+    ck_Random random = ck_random_seed(4);
+    fixture_load(&fixture,
+                 "name: f\nrope: {particles: 2, spacing: 1, mass: 1, origin: [0, 9, 0]}\ntime: {duration: 1, fps: "
+                 "10}\ncolliders: [{box: {center: [0, 1, 0], size: [0.6, 0.2, 0.4], along: [1, 0.5, 0.3], up: [0.2, "
+                 "1, 0.4]}}]\n");
+    const ck_Collider *box = &fixture.model.colliders[0];
+    for (int round = 0; round < 2000; round++) {
+        const int face = round % 3;
+        const double off = pow(10, -16 + 6 * ck_random_unit(&random));
+        double point[3], normal[3];
+        memcpy(point, box->point, sizeof point);
+        for (int k = 0; k < 3; k++)
+            ck_add_scaled(point,
+                          k == face ? box->half[k] + off : 0.9 * box->half[k] * (2 * ck_random_unit(&random) - 1),
+                          box->axes[k]);
+        ck_collider_gap(box, point, normal);
+        assert_near("normal", ck_dot(normal, box->axes[face]), 1, 1e-12);
+    }
+    fixture_free(&fixture);
+}
+
 // How fast a surface turns away from a tangent, by the gap along it.
 static void test_turn_is_the_curvature(void **state) {
     (void)state;
@@ -296,6 +321,7 @@ static void test_capstan(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_gap_is_the_distance),
+                                       cmocka_unit_test(test_normal_of_a_face),
                                        cmocka_unit_test(test_turn_is_the_curvature),
                                        cmocka_unit_test(test_hits),
                                        cmocka_unit_test(test_table_edge),

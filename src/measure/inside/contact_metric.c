@@ -1,6 +1,7 @@
 #include "contact_metric.h"
 
 #include "collider.h"
+#include "path.h"
 #include "shape.h"
 #include "vector.h"
 
@@ -199,19 +200,32 @@ double ck_metric_friction_over(const ck_Model *model, const ck_Trajectory *traje
     return ((first * first - last * last) / (2 * way) + ck_dot(drive, line)) / press;
 }
 
+// The least gap of a particle's way from one frame to the next, as the collider sees it, which may move.
+static double least_gap(const ck_Collider *collider, const ck_Trajectory *trajectory, int frame, int particle) {
+    double from[3], to[3], moved[3], speed[3], gain[3];
+    memcpy(from, ck_trajectory_position(trajectory, frame) + 3 * particle, sizeof from);
+    memcpy(to, ck_trajectory_position(trajectory, frame + 1) + 3 * particle, sizeof to);
+    if (collider->path) {
+        ck_path_at(collider->path, frame * trajectory->step, -1, moved, speed, gain);
+        ck_add_scaled(from, -1, moved);
+        ck_path_at(collider->path, (frame + 1) * trajectory->step, -1, moved, speed, gain);
+        ck_add_scaled(to, -1, moved);
+    }
+    return ck_collider_least_gap(collider, from, to);
+}
+
 double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
     int solids = 0, passed = 0;
     for (int j = 0; j < model->collider_count; j++) solids += model->colliders[j].shape != CK_PLANE;
     for (int i = 0; i < model->particle_count && solids; i++) {
         bool through = false;
+        if (ck_model_is_held(model, i)) continue; // a pin may be inside
         for (int frame = 0; frame + 1 < trajectory->frame_count && !through; frame++)
             for (int j = 0; j < model->collider_count; j++)
                 through |=
-                    model->colliders[j].shape != CK_PLANE &&
-                    ck_collider_least_gap(&model->colliders[j], ck_trajectory_position(trajectory, frame) + 3 * i,
-                                          ck_trajectory_position(trajectory, frame + 1) + 3 * i) <
-                        -0.5 * ck_collider_breadth(&model->colliders[j]);
+                    model->colliders[j].shape != CK_PLANE && least_gap(&model->colliders[j], trajectory, frame, i) <
+                                                                 -0.5 * ck_collider_breadth(&model->colliders[j]);
         passed += through;
     }
     return solids ? (double)passed / model->particle_count : NAN;

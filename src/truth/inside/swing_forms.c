@@ -30,8 +30,7 @@ static void jacobi(double u, double modulus, double *sn, double *cn, double *dn)
 }
 
 ck_Status ck_truth_pendulum(const ck_Model *model, double time, double *position, double *velocity, ck_Error *error) {
-    unsigned others =
-        CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE;
+    unsigned others = CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE;
     double g = ck_length(model->gravity), bar[3] = {0}, side[3] = {0}, down[3],
            length = model->spring_count ? model->springs[0].rest : 1, start = 0;
     bool fits = model->particle_count == 2 && model->spring_count == 1 && model->pinned[0] && !model->pinned[1] &&

@@ -212,9 +212,10 @@ static bool comes_in(const ck_Touches *touches, int particle, int collider) {
 }
 
 // The share of the step at which it last comes in from outside; one that is never outside comes in at once.
+//   inside  the share at which it is inside
 static double impact_share(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
-                           const double *end_velocity) {
-    double inside = 1, outside = 1;
+                           const double *end_velocity, double inside) {
+    double outside = inside;
     do outside -= 1.0 / 16;
     while (outside > 0 && gap_at(touches, particle, collider, dt, end, end_velocity, outside) <= 0);
     const double start = outside > 0 ? INFINITY : gap_at(touches, particle, collider, dt, end, end_velocity, 0);
@@ -325,6 +326,28 @@ static void note_change(ck_Touches *touches, int particle, double dt, const doub
     if (back <= 0) note(touch, on > touches->rest ? TURN : STOP, 0, fmax(LEAST, crossing(on, back)));
 }
 
+// Of a step whose end is outside: the first share of so many at which the particle is inside a solid that it passes
+// through; above 1: at none. Looked for only where the chord goes through, as the collider sees it.
+#define SHARES 64
+
+static double passing_share(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
+                            const double *end_velocity) {
+    const double *x = touches->position + 3 * particle;
+    const ck_Collider *solid = &touches->model->colliders[collider];
+    double velocity[3], gain[3], to[3], way[3];
+    if (solid->shape == CK_PLANE) return 2;
+    const ck_Collider before = ck_collider_at(solid, touches->time, 1, velocity, gain),
+                      after = ck_collider_at(solid, touches->time + dt, -1, velocity, gain);
+    ck_subtract(way, after.point, before.point);
+    ck_subtract(to, end, way);
+    if (!(ck_collider_least_gap(&before, x, to) < -touches->thin)) return 2;
+    for (int i = 1; i < SHARES; i++) {
+        const double share = i / (double)SHARES;
+        if (gap_at(touches, particle, collider, dt, end, end_velocity, share) < -touches->thin) return share;
+    }
+    return 2;
+}
+
 double ck_touches_first_event(ck_Touches *touches, double dt, const double *position, const double *velocity,
                               const double *acceleration) {
     double first = 2;
@@ -336,8 +359,10 @@ double ck_touches_first_event(ck_Touches *touches, double dt, const double *posi
         if (touch->collider >= 0) note_change(touches, i, dt, position, velocity, acceleration);
         for (int c = 0; c < touches->model->collider_count; c++) {
             if (c == touch->collider) continue;
-            if (surface_at(touches, c, touches->time + dt, -1, position + 3 * i).gap < -touches->thin)
-                note(touch, IMPACT, c, impact_share(touches, i, c, dt, position + 3 * i, velocity + 3 * i));
+            const double *x = position + 3 * i, *v = velocity + 3 * i;
+            const bool is_in = surface_at(touches, c, touches->time + dt, -1, x).gap < -touches->thin;
+            const double inside = is_in ? 1 : passing_share(touches, i, c, dt, x, v);
+            if (inside <= 1) note(touch, IMPACT, c, impact_share(touches, i, c, dt, x, v, inside));
         }
         first = fmin(first, touch->when);
     }

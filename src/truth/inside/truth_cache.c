@@ -17,62 +17,8 @@ typedef struct Header {
     int32_t path_count, particle_count, horizon, frame_counts[CK_TRUTH_MAX_PATHS], unused;
 } Header;
 
-static uint64_t hash_path(uint64_t value, const ck_Path *path) {
-    const double numbers[] = {path->kind,      path->from,      path->to,       path->vector[0],
-                              path->vector[1], path->vector[2], path->frequency};
-    value = ck_hash(value, numbers, sizeof numbers);
-    return ck_hash(value, path->points, (size_t)path->point_count * sizeof *path->points);
-}
-
 uint64_t ck_truth_cache_hash(const ck_Model *model) {
-    size_t count = (size_t)model->particle_count;
-    uint64_t value = ck_hash(CK_HASH_START, model->truth, strlen(model->truth));
-    value = ck_hash(value, model->position, 3 * count * sizeof(double));
-    value = ck_hash(value, model->velocity, 3 * count * sizeof(double));
-    value = ck_hash(value, model->mass, count * sizeof(double));
-    value = ck_hash(value, model->pinned, count * sizeof(bool));
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        const double numbers[5] = {spring->a, spring->b, spring->rest, spring->stiffness, spring->damping};
-        value = ck_hash(value, numbers, sizeof numbers);
-        if (spring->pulls_only) value = ck_hash(value, &spring->pulls_only, sizeof spring->pulls_only);
-    }
-    for (int i = 0; i < model->hinge_count; i++) {
-        const ck_Hinge *hinge = &model->hinges[i];
-        const double numbers[2] = {hinge->stiffness, hinge->rest};
-        value = ck_hash(value, hinge->particles, sizeof hinge->particles);
-        value = ck_hash(value, hinge->weights, sizeof hinge->weights);
-        value = ck_hash(value, numbers, sizeof numbers);
-    }
-    if (model->wind.face_count) {
-        const ck_Wind *wind = &model->wind;
-        const double numbers[] = {wind->velocity[0], wind->velocity[1], wind->velocity[2],
-                                  wind->density,     wind->drag,        wind->lift};
-        value = ck_hash(value, numbers, sizeof numbers);
-        value = ck_hash(value, wind->faces, (size_t)wind->face_count * sizeof *wind->faces);
-    }
-    for (int i = 0; i < model->driven_count; i++) {
-        value = ck_hash(value, &model->driven[i].particle, sizeof model->driven[i].particle);
-        value = hash_path(value, model->driven[i].path);
-    }
-    for (int i = 0; i < model->collider_count; i++) {
-        const ck_Collider *collider = &model->colliders[i];
-        const double numbers[] = {collider->shape, collider->radius, collider->restitution, collider->friction};
-        value = ck_hash(value, numbers, sizeof numbers);
-        value = ck_hash(value, collider->point, sizeof collider->point);
-        value = ck_hash(value, collider->normal, sizeof collider->normal);
-        value = ck_hash(value, collider->axes, sizeof collider->axes);
-        value = ck_hash(value, collider->half, sizeof collider->half);
-        if (collider->path) value = hash_path(value, collider->path);
-    }
-    for (int i = 0; i < model->release_count; i++) {
-        const ck_Release *release = &model->releases[i];
-        value = ck_hash(value, &release->frame, sizeof release->frame);
-        value = ck_hash(value, release->particles, (size_t)release->particle_count * sizeof *release->particles);
-    }
-    const double numbers[] = {model->gravity[0], model->gravity[1], model->gravity[2], model->force[0], model->force[1],
-                              model->force[2],   model->drag,       model->duration,   model->step};
-    return ck_hash(value, numbers, sizeof numbers);
+    return ck_hash(ck_model_hash(model), model->truth, strlen(model->truth));
 }
 
 static size_t path_bytes(const ck_Model *model, int frames) {
