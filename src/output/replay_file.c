@@ -62,9 +62,15 @@ static bool read_path(const char **line, const char *first) {
     return !strncmp(whole, "\npath ", strlen("\npath ")) && is_plain && is_new;
 }
 
-// "plane" or "sphere" and its numbers; or "moves", of the one before, and times and places.
+// A collider's shape and its numbers; or "moves", of the one before, and times and places.
 static bool read_collider(const char **line) {
-    int numbers = !strncmp(*line, "plane ", 6) ? 6 : !strncmp(*line, "sphere ", 7) ? 4 : 0;
+    static const struct {
+        const char *word;
+        int numbers;
+    } shapes[] = {{"plane ", 6}, {"sphere ", 4}, {"capsule ", 16}, {"cylinder ", 16}, {"box ", 16}};
+    int numbers = 0;
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
+        if (!strncmp(*line, shapes[i].word, strlen(shapes[i].word))) numbers = shapes[i].numbers;
     if (!strncmp(*line, "moves ", 6))
         for (const char *letter = *line; *letter && *letter != '\n'; letter++) numbers += *letter == ' ';
     const char *at = strchr(*line, ' ');

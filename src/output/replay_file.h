@@ -12,6 +12,7 @@
 //     path native-verlet               one a path, in their order; "truth" where there is one
 //     plane 0 -1 0 0 1 0               any number of these: point and normal, m
 //     sphere 0 -1 0 0.3                and of these: centre and radius, m
+//     box 0 -1 0 0.1 1 0 0 0 1 0 0 0 1 0.3 0.2 0.4   or capsule or cylinder: centre, radius, three axes, half the core
 //     data
 // and goes on with little-endian numbers: times [frames] float32, s; structural springs [springs][2] int32; their rest
 // lengths [springs] float32, m; triangles [triangles][3] int32; positions [paths][frames][particles][3] float32, m, NaN

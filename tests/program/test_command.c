@@ -204,6 +204,22 @@ static void test_folder_of_others(void **state) {
     assert_int_equal(system(command), 0);
 }
 
+// What compare writes of a scene with solids, moving ones among them, report takes.
+static void test_report_of_solids(void **state) {
+    (void)state;
+    char command[900];
+    snprintf(
+        command, sizeof command,
+        "cd %s && printf 'name: solids\\nrope: {particles: 2, spacing: 0.1, mass: 1}\\ngravity: [0, -9.81, "
+        "0]\\ncolliders: [{capsule: {from: [0, -1, 0], to: [1, -1, 0], radius: 0.1}}, {cylinder: {point: [0, -2, 0], "
+        "axis: [0, 0, 1], radius: 0.1}, path: {velocity: [0, 1, 0]}}, {box: {center: [0, -3, 0], size: [1, 1, "
+        "1]}}]\\ntime: {duration: 0.2, fps: 10}\\n' >solids.yaml && %s compare solids.yaml --engine native-verlet "
+        "--engine still --repeats 0 --out solids >/dev/null && %s report solids >/dev/null && test -s "
+        "solids/index.html",
+        fixture_directory, PROGRAM, PROGRAM);
+    assert_int_equal(system(command), 0);
+}
+
 // Whoever reads what is printed may go, as head does: the results are there all the same, and the status says it.
 static void test_reader_gone(void **state) {
     (void)state;
@@ -357,6 +373,7 @@ int main(void) {
         cmocka_unit_test(test_comparison_repeats),
         cmocka_unit_test(test_interrupt),
         cmocka_unit_test(test_reader_gone),
+        cmocka_unit_test(test_report_of_solids),
         cmocka_unit_test(test_folder_of_others),
         cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_update_keeps),
