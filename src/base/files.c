@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *error) {
@@ -117,6 +118,15 @@ static int open_locked(const char *path) {
     }
     errno = EBUSY;
     return -1;
+}
+
+bool ck_file_lock(int file) {
+    const struct timespec pause = {.tv_nsec = 20000000};
+    for (int tries = 0; tries < 100; tries++) {
+        if (!flock(file, LOCK_EX | LOCK_NB)) return true;
+        nanosleep(&pause, NULL);
+    }
+    return false;
 }
 
 ck_Status ck_whole_file_open(ck_WholeFile *whole, const char *directory, const char *name, ck_Error *error) {

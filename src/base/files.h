@@ -46,6 +46,10 @@ static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
     return start;
 }
 
+// Locks an open file for this process and its children. False where another process holds it for two seconds: the
+// workers of one that was killed do until they are dead, too.
+bool ck_file_lock(int file);
+
 // A file that appears whole or not at all: written beside its name under a lock, then renamed. What killed processes
 // have left of it is removed when it is begun again.
 typedef struct ck_WholeFile {

@@ -10,9 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #define QUESTION "question"
@@ -46,16 +44,6 @@ static int count_scenes(const char *directory) {
     return count;
 }
 
-// The workers of a comparison that was killed hold its lock until they are dead, too.
-static bool lock(int file) {
-    const struct timespec pause = {.tv_nsec = 20000000};
-    for (int tries = 0; tries < 100; tries++) {
-        if (!flock(file, LOCK_EX | LOCK_NB)) return true;
-        nanosleep(&pause, NULL);
-    }
-    return false;
-}
-
 static bool is_asked(int file, const char *question) {
     const size_t length = strlen(question);
     char *text = malloc(length + 2);
@@ -81,7 +69,7 @@ ck_Status ck_unfinished_open(ck_Unfinished *unfinished, const char *out, const c
                          unfinished->directory);
         unlink(path);
     }
-    if (!status && !lock(unfinished->question))
+    if (!status && !ck_file_lock(unfinished->question))
         status = ck_fail(error, CK_BAD_INPUT, "%s: another comparison is running there; give another --out", out);
     if (!status && !is_asked(unfinished->question, question)) {
         *dropped = count_scenes(unfinished->directory);

@@ -9,9 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #define MAX_ROW 4096
@@ -145,16 +143,6 @@ static ck_Status ask(const ck_Journal *journal, const char *question, ck_Error *
     return append(journal, text, length, error);
 }
 
-// The workers of a study that was killed hold its lock until they are dead, too.
-static bool lock(int file) {
-    const struct timespec pause = {.tv_nsec = 20000000};
-    for (int tries = 0; tries < 100; tries++) {
-        if (!flock(file, LOCK_EX | LOCK_NB)) return true;
-        nanosleep(&pause, NULL);
-    }
-    return false;
-}
-
 ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char *name, const char *question,
                           ck_ValueName name_at, void (*kept)(void *context, const char *key, const ck_JournalRow *row),
                           void *context, ck_Error *error) {
@@ -164,7 +152,7 @@ ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char
     if (!journal->path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     journal->file = open(journal->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (journal->file < 0) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
-    if (!lock(journal->file))
+    if (!ck_file_lock(journal->file))
         return ck_fail(error, CK_BAD_INPUT, "%s: another study is running there; give another --out", journal->path);
     size_t length;
     char *text = read_lines(journal->file, &length);

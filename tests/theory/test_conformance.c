@@ -38,7 +38,8 @@ static const char turn_rigid[] = "name: turn_rigid\nrope: {particles: 2, spacing
 static double distance_to_prediction(const TruthFixture *fixture, const ck_Trajectory *trajectory,
                                      const ck_Engine *engine, const ck_Settings *used) {
     ck_Reference prediction;
-    assert_int_equal(ck_prediction_create(&prediction, &fixture->model, engine, used, &fixture->truth, NULL, NULL), CK_OK);
+    assert_int_equal(ck_prediction_create(&prediction, &fixture->model, engine, used, &fixture->truth, NULL, NULL),
+                     CK_OK);
     double distance = ck_metric_value(ck_metric_find("position_rms"), &fixture->model, trajectory, &prediction);
     ck_trajectory_free(&prediction.trajectory);
     return distance;
@@ -117,7 +118,8 @@ static void test_sweeps(void **state) {
         ck_Trajectory trajectory;
         ck_Reference prediction;
         fixture_run(&trajectory, &fixture.model, bars, &settings, &used);
-        assert_int_equal(ck_prediction_create(&prediction, &fixture.model, bars, &used, &fixture.truth, NULL, NULL), CK_OK);
+        assert_int_equal(ck_prediction_create(&prediction, &fixture.model, bars, &used, &fixture.truth, NULL, NULL),
+                         CK_OK);
         const ck_Metric *sag = ck_metric_find("sag");
         double dt = fixture.model.step / settings.substeps, size = fixture.model.size;
         double stretch = size * (ck_metric_value(sag, &fixture.model, &trajectory, &prediction) - 1);
