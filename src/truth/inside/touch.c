@@ -1,6 +1,7 @@
 #include "touch.h"
 
 #include "collider.h"
+#include "path.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -30,29 +31,38 @@ struct ck_Touches {
     double *position, *velocity, *acceleration; // [3*n] there
 };
 
-// A collider at a time, and where a particle is to it.
+// Where a particle is to a collider at a time, which has moved so far by then.
 typedef struct Surface {
-    ck_Collider collider;
+    const ck_Collider *collider;
     ck_Part part; // of one that is touched, which goes on beyond its borders
-    double velocity[3], acceleration[3];
+    double moved[3], velocity[3], acceleration[3];
     double normal[3], gap;
 } Surface;
 
+//   seen  out: the particle's place, less how far the collider has moved
+static Surface look_at(const ck_Touches *touches, int collider, double time, int side, const double *point,
+                       double *seen) {
+    Surface surface = {.collider = &touches->model->colliders[collider]};
+    memcpy(seen, point, 3 * sizeof(double));
+    if (!surface.collider->path) return surface;
+    ck_path_at(surface.collider->path, time, side, surface.moved, surface.velocity, surface.acceleration);
+    ck_add_scaled(seen, -1, surface.moved);
+    return surface;
+}
+
 static Surface surface_at(const ck_Touches *touches, int collider, double time, int side, const double *point) {
-    Surface surface = {.gap = 0};
-    surface.collider =
-        ck_collider_at(&touches->model->colliders[collider], time, side, surface.velocity, surface.acceleration);
-    surface.gap = ck_collider_gap(&surface.collider, point, surface.normal);
+    double seen[3];
+    Surface surface = look_at(touches, collider, time, side, point, seen);
+    surface.gap = ck_collider_gap(surface.collider, seen, surface.normal);
     return surface;
 }
 
 // That which a particle touches.
 static Surface surface_of(const ck_Touches *touches, const Touch *touch, double time, int side, const double *point) {
-    Surface surface;
-    surface.collider =
-        ck_collider_at(&touches->model->colliders[touch->collider], time, side, surface.velocity, surface.acceleration);
+    double seen[3];
+    Surface surface = look_at(touches, touch->collider, time, side, point, seen);
     surface.part = touch->part;
-    surface.gap = ck_collider_part_gap(&surface.collider, touch->part, point, surface.normal);
+    surface.gap = ck_collider_part_gap(surface.collider, touch->part, seen, surface.normal);
     return surface;
 }
 
@@ -98,7 +108,7 @@ static double pressing(const Surface *surface, const double *velocity, const dou
     double relative[3];
     ck_subtract(relative, velocity, surface->velocity);
     ck_tangential(along, relative, surface->normal);
-    const double turn = ck_collider_turn(&surface->collider, surface->part, along);
+    const double turn = ck_collider_turn(surface->collider, surface->part, along);
     return -turn + ck_dot(surface->acceleration, surface->normal) - ck_dot(acceleration, surface->normal);
 }
 
@@ -112,7 +122,7 @@ static Push push_of(const Surface *surface, const double *velocity, const double
     Push push;
     double relative[3];
     push.press = pressing(surface, velocity, acceleration, slip);
-    push.friction = surface->collider.friction * fmax(0, push.press);
+    push.friction = surface->collider->friction * fmax(0, push.press);
     ck_subtract(relative, acceleration, surface->acceleration);
     ck_tangential(push.along, relative, surface->normal);
     return push;
@@ -275,10 +285,9 @@ static double stop_share(const double *along, const Push *start, const Push *end
 }
 
 static double excess_at(const ck_Touches *touches, const Touch *touch, int axis, double time, const double *point) {
-    double velocity[3], acceleration[3];
-    const ck_Collider there =
-        ck_collider_at(&touches->model->colliders[touch->collider], time, 1, velocity, acceleration);
-    return ck_collider_part_excess(&there, axis, point);
+    double seen[3];
+    const Surface surface = look_at(touches, touch->collider, time, 1, point, seen);
+    return ck_collider_part_excess(surface.collider, axis, seen);
 }
 
 // Where a particle goes over the border of the part of the surface that it is on, there curved otherwise.
@@ -320,7 +329,7 @@ static void note_change(ck_Touches *touches, int particle, double dt, const doub
         if (margin(&after) < 0) note(touch, SLIP, 0, crossing(margin(&before), margin(&after)));
         return;
     }
-    if (!(end.collider.friction > 0)) return;
+    if (!(end.collider->friction > 0)) return;
     if (ck_length(slip) > touches->rest) note(touch, STOP, 0, stop_share(slip, &before, &after, dt));
     const double on = ck_dot(slip, touch->way), back = ck_dot(left, touch->way);
     if (back <= 0) note(touch, on > touches->rest ? TURN : STOP, 0, fmax(LEAST, crossing(on, back)));
@@ -330,17 +339,17 @@ static void note_change(ck_Touches *touches, int particle, double dt, const doub
 // through; above 1: at none. Looked for only where the chord goes through, as the collider sees it.
 #define SHARES 64
 
+//   gap  at the end
 static double passing_share(const ck_Touches *touches, int particle, int collider, double dt, const double *end,
-                            const double *end_velocity) {
+                            const double *end_velocity, double gap) {
     const double *x = touches->position + 3 * particle;
     const ck_Collider *solid = &touches->model->colliders[collider];
-    double velocity[3], gain[3], to[3], way[3];
-    if (solid->shape == CK_PLANE) return 2;
-    const ck_Collider before = ck_collider_at(solid, touches->time, 1, velocity, gain),
-                      after = ck_collider_at(solid, touches->time + dt, -1, velocity, gain);
-    ck_subtract(way, after.point, before.point);
-    ck_subtract(to, end, way);
-    if (!(ck_collider_least_gap(&before, x, to) < -touches->thin)) return 2;
+    double from[3], to[3];
+    // from one that stays nothing was nearer than it has come
+    if (solid->shape == CK_PLANE || (!solid->path && gap > ck_distance(x, end))) return 2;
+    look_at(touches, collider, touches->time, 1, x, from);
+    look_at(touches, collider, touches->time + dt, -1, end, to);
+    if (!(ck_collider_least_gap(solid, from, to) < -touches->thin)) return 2;
     for (int i = 1; i < SHARES; i++) {
         const double share = i / (double)SHARES;
         if (gap_at(touches, particle, collider, dt, end, end_velocity, share) < -touches->thin) return share;
@@ -360,8 +369,8 @@ double ck_touches_first_event(ck_Touches *touches, double dt, const double *posi
         for (int c = 0; c < touches->model->collider_count; c++) {
             if (c == touch->collider) continue;
             const double *x = position + 3 * i, *v = velocity + 3 * i;
-            const bool is_in = surface_at(touches, c, touches->time + dt, -1, x).gap < -touches->thin;
-            const double inside = is_in ? 1 : passing_share(touches, i, c, dt, x, v);
+            const double gap = surface_at(touches, c, touches->time + dt, -1, x).gap;
+            const double inside = gap < -touches->thin ? 1 : passing_share(touches, i, c, dt, x, v, gap);
             if (inside <= 1) note(touch, IMPACT, c, impact_share(touches, i, c, dt, x, v, inside));
         }
         first = fmin(first, touch->when);
@@ -396,15 +405,17 @@ static void strike(ck_Touches *touches, int particle, int collider, double time,
     double relative[3], along[3];
     ck_add_scaled(x, -surface.gap, surface.normal);
     ck_subtract(relative, v, surface.velocity);
-    const double speed = -ck_dot(relative, surface.normal), back = surface.collider.restitution * fmax(0, speed);
+    const double speed = -ck_dot(relative, surface.normal), back = surface.collider->restitution * fmax(0, speed);
     const bool rests = back <= touches->rest;
     const double jump = fmax(0, speed) + (rests ? 0 : back);
     ck_tangential(along, relative, surface.normal);
     const double sliding = ck_length(along);
     if (speed > 0) ck_add_scaled(v, jump, surface.normal);
-    if (sliding > 0) ck_add_scaled(v, -fmin(1, surface.collider.friction * jump / sliding), along);
+    if (sliding > 0) ck_add_scaled(v, -fmin(1, surface.collider->friction * jump / sliding), along);
     ck_subtract(relative, v, surface.velocity);
-    touch->part = ck_collider_part(&surface.collider, x, relative);
+    double seen[3] = {x[0], x[1], x[2]};
+    ck_add_scaled(seen, -1, surface.moved);
+    touch->part = ck_collider_part(surface.collider, seen, relative);
     touch->collider = rests ? collider : -1;
     touch->sticks = false;
     touch->event = rests ? STOP : NO_EVENT;
@@ -415,11 +426,12 @@ static void turn_over(ck_Touches *touches, Touch *touch, double time, const doub
     const Surface surface = surface_of(touches, touch, time, 1, x);
     double from[3];
     int beyond = 0;
-    ck_subtract(from, x, surface.collider.point);
-    const double local = ck_dot(from, surface.collider.axes[touch->hit]);
+    ck_subtract(from, x, surface.collider->point);
+    ck_add_scaled(from, -1, surface.moved);
+    const double local = ck_dot(from, surface.collider->axes[touch->hit]);
     touch->part.beyond[touch->hit] = touch->part.beyond[touch->hit] ? 0 : local < 0 ? -1 : 1;
     for (int axis = 0; axis < 3; axis++) beyond += touch->part.beyond[axis] != 0;
-    if (!(surface.collider.radius > 0) && beyond > 1) touch->collider = -1;
+    if (!(surface.collider->radius > 0) && beyond > 1) touch->collider = -1;
 }
 
 bool ck_touches_change(ck_Touches *touches, double time, double *position, double *velocity) {
