@@ -260,9 +260,9 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     close(output);
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
     if (tail) describe(result, wait_status, limits, tail);
-    const bool has_tail = tail != NULL;
+    ck_Status status = tail ? ck_child_check(error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
     free(tail);
-    return has_tail ? ck_child_check(error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    return status;
 }
 
 typedef struct Crew {

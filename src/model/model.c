@@ -191,9 +191,9 @@ static double first_free(const ck_Model *model, int particle, double *position) 
 }
 
 ck_Status ck_model_check_outside(const ck_Model *model, const ck_Scene *scene, ck_Error *error) {
-    for (int i = 0; i < model->particle_count * (model->collider_count > 0); i++) {
+    for (int i = 0; i < model->particle_count; i++) {
         double position[3], normal[3], speed[3], gain[3];
-        if (ck_model_is_held(model, i)) continue;
+        if (!model->collider_count || ck_model_is_held(model, i)) continue;
         const double time = first_free(model, i, position);
         for (int j = 0; j < model->collider_count; j++) {
             const ck_Collider there = ck_collider_at(&model->colliders[j], time, -1, speed, gain);

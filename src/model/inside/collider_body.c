@@ -21,10 +21,16 @@ static void complete_axes(double (*axes)[3]) {
     ck_cross(axes[2], axes[0], axes[1]);
 }
 
+static void set_surface(ck_Collider *collider, double restitution, double friction) {
+    collider->restitution = restitution;
+    collider->friction = friction;
+}
+
 static ck_Status set_capsule(ck_Collider *collider, const ck_SceneCapsule *from, const ck_Scene *scene, const char *at,
                              ck_Error *error) {
     double along[3];
     collider->shape = CK_CAPSULE;
+    set_surface(collider, from->restitution, from->friction);
     collider->radius = from->radius;
     ck_subtract(along, from->to, from->from);
     for (int k = 0; k < 3; k++) collider->point[k] = from->from[k] + 0.5 * along[k];
@@ -41,6 +47,7 @@ static ck_Status set_cylinder(ck_Collider *collider, const ck_SceneCylinder *fro
     char place[64];
     snprintf(place, sizeof place, "%s.axis", at);
     collider->shape = CK_CYLINDER;
+    set_surface(collider, from->restitution, from->friction);
     collider->radius = from->radius;
     collider->half[0] = INFINITY;
     memcpy(collider->point, from->point, sizeof collider->point);
@@ -55,6 +62,7 @@ static ck_Status set_box(ck_Collider *collider, const ck_SceneBox *from, const c
     char place[64];
     double up[3];
     collider->shape = CK_BOX;
+    set_surface(collider, from->restitution, from->friction);
     collider->radius = from->rounding;
     memcpy(collider->point, from->center, sizeof collider->point);
     for (int k = 0; k < 3; k++) {
@@ -83,45 +91,35 @@ static ck_Status set_plane(ck_Collider *collider, const ck_ScenePlane *from, con
     char place[64];
     snprintf(place, sizeof place, "%s.normal", at);
     collider->shape = CK_PLANE;
+    set_surface(collider, from->restitution, from->friction);
     memcpy(collider->point, from->point, sizeof collider->point);
     return ck_model_unit(collider->normal, from->normal, scene, place, error);
 }
 
-static void set_surface(ck_Collider *collider, double restitution, double friction) {
-    collider->restitution = restitution;
-    collider->friction = friction;
+static ck_Status set_sphere(ck_Collider *collider, const ck_SceneSphere *from) {
+    collider->shape = CK_SPHERE;
+    collider->radius = from->radius;
+    memcpy(collider->point, from->center, sizeof collider->point);
+    set_surface(collider, from->restitution, from->friction);
+    return CK_OK;
 }
 
 static ck_Status set_collider(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
     const ck_SceneCollider *from = &scene->file->colliders[index];
     ck_Collider *collider = &model->colliders[model->collider_count++];
+    // a scene's collider has one of these
+    const void *const shapes[CK_SHAPE_COUNT] = {from->plane, from->sphere, from->capsule, from->cylinder, from->box};
+    ck_ColliderShape shape = CK_PLANE;
     char at[48];
-    snprintf(at, sizeof at, "colliders[%u].%s", index,
-             from->plane      ? "plane"
-             : from->capsule  ? "capsule"
-             : from->cylinder ? "cylinder"
-                              : "box");
-    if (from->sphere) {
-        collider->shape = CK_SPHERE;
-        collider->radius = from->sphere->radius;
-        memcpy(collider->point, from->sphere->center, sizeof collider->point);
-        set_surface(collider, from->sphere->restitution, from->sphere->friction);
-        return CK_OK;
+    while (!shapes[shape] && shape + 1 < CK_SHAPE_COUNT) shape++;
+    snprintf(at, sizeof at, "colliders[%u].%s", index, ck_shape_names[shape]);
+    switch (shape) {
+    case CK_PLANE: return set_plane(collider, from->plane, scene, at, error);
+    case CK_SPHERE: return set_sphere(collider, from->sphere);
+    case CK_CAPSULE: return set_capsule(collider, from->capsule, scene, at, error);
+    case CK_CYLINDER: return set_cylinder(collider, from->cylinder, scene, at, error);
+    default: return set_box(collider, from->box, scene, at, error);
     }
-    if (from->plane) {
-        set_surface(collider, from->plane->restitution, from->plane->friction);
-        return set_plane(collider, from->plane, scene, at, error);
-    }
-    if (from->capsule) {
-        set_surface(collider, from->capsule->restitution, from->capsule->friction);
-        return set_capsule(collider, from->capsule, scene, at, error);
-    }
-    if (from->cylinder) {
-        set_surface(collider, from->cylinder->restitution, from->cylinder->friction);
-        return set_cylinder(collider, from->cylinder, scene, at, error);
-    }
-    set_surface(collider, from->box->restitution, from->box->friction);
-    return set_box(collider, from->box, scene, at, error);
 }
 
 ck_Status ck_model_set_colliders(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
