@@ -1,4 +1,5 @@
 // Where scenes are: in scenes/ of the folder that the user is in, and where the program keeps those that came with it.
+#include "change.h"
 #include "command.h"
 
 #include "files.h"
@@ -37,18 +38,25 @@ static ck_Status fail_scene(const char *name, ck_Error *error) {
 }
 
 ck_Status ck_scene_path(char **path, const char *scene, ck_Error *error) {
-    bool is_bare = !strchr(scene, '/') && !strchr(scene, '.');
-    char data[4096];
-    if (asprintf(path, is_bare ? "scenes/%s.yaml" : "%s", scene) < 0) *path = NULL;
-    if (*path && is_bare && access(*path, F_OK) && ck_path_data(data, sizeof data)) {
-        free(*path);
-        if (asprintf(path, "%s/scenes/%s.yaml", data, scene) < 0) *path = NULL;
+    const int length = ck_change_file_length(scene);
+    const char *changes = scene + length;
+    char name[4096], data[4096];
+    snprintf(name, sizeof name, "%.*s", length, scene);
+    bool is_bare = !strchr(name, '/') && !strchr(name, '.');
+    char *file = NULL;
+    if (asprintf(&file, is_bare ? "scenes/%s.yaml" : "%s", name) < 0) file = NULL;
+    if (file && is_bare && access(file, F_OK) && ck_path_data(data, sizeof data)) {
+        free(file);
+        if (asprintf(&file, "%s/scenes/%s.yaml", data, name) < 0) file = NULL;
     }
+    if (!file || asprintf(path, "%s%s", file, changes) < 0) *path = NULL;
+    const bool is_there = file && (!is_bare || !access(file, F_OK));
+    free(file);
     if (!*path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!is_bare || !access(*path, F_OK)) return CK_OK;
+    if (is_there) return CK_OK;
     free(*path);
     *path = NULL;
-    return fail_scene(scene, error);
+    return fail_scene(name, error);
 }
 
 ck_Status ck_arguments_add_scene(ck_Arguments *arguments, const char *scene, ck_Error *error) {

@@ -1,5 +1,7 @@
 #include "document.h"
 
+#include "change.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <stdarg.h>
@@ -10,7 +12,7 @@
 #include <sys/stat.h>
 
 static ck_Status read_text(ck_Document *document, ck_Error *error) {
-    const char *path = document->path;
+    const char *path = document->file;
     struct stat info;
     if (stat(path, &info))
         return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a scene file", path, strerror(errno));
@@ -67,24 +69,37 @@ static ck_Status scan(const ck_Document *document, ck_Error *error) {
     return status;
 }
 
-ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error) {
-    *document = (ck_Document){.path = strdup(path)};
-    if (!document->path) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
-    ck_Status status = read_text(document, error);
-    if (!status) status = scan(document, error);
+static ck_Status parse(ck_Document *document, ck_Error *error) {
+    ck_Status status = scan(document, error);
     if (status) return status;
-
     yaml_parser_t parser;
-    if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
     yaml_parser_set_input_string(&parser, document->text, document->length);
     document->has_yaml = yaml_parser_load(&parser, &document->yaml);
     if (!document->has_yaml)
-        status = ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", path, parser.problem_mark.line + 1,
-                         parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
+        status =
+            ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", document->path, parser.problem_mark.line + 1,
+                    parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
     else if (!yaml_document_get_root_node(&document->yaml))
         status = ck_fail(error, CK_BAD_INPUT,
-                         "%s:1:1: is empty; a scene needs name, a body (cloth, rope, network or mesh) and time", path);
+                         "%s:1:1: is empty; a scene needs name, a body (cloth, rope, network or mesh) and time",
+                         document->path);
     yaml_parser_delete(&parser);
+    return status;
+}
+
+ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error) {
+    ck_Change change;
+    *document = (ck_Document){.path = strdup(path), .file = strndup(path, (size_t)ck_change_file_length(path))};
+    if (!document->path || !document->file) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    ck_Status status = read_text(document, error);
+    if (!status) status = parse(document, error);
+    for (int place = 0; !status && ck_change_next(path, &place, &change);) {
+        status = ck_change_apply(document, &change, error);
+        yaml_document_delete(&document->yaml);
+        document->has_yaml = false;
+        if (!status) status = parse(document, error);
+    }
     return status;
 }
 
@@ -92,6 +107,7 @@ void ck_document_free(ck_Document *document) {
     if (document->has_yaml) yaml_document_delete(&document->yaml);
     free(document->text);
     free(document->path);
+    free(document->file);
     *document = (ck_Document){0};
 }
 
@@ -113,10 +129,12 @@ static yaml_node_t *child_by_index(yaml_document_t *yaml, yaml_node_t *node, lon
     return yaml_document_get_node(yaml, node->data.sequence.items.start[index]);
 }
 
-yaml_node_t *ck_document_find(const ck_Document *document, const char *path) {
+// The node at a path, or where that ends early its deepest part; is_whole: out, whether it does not.
+static yaml_node_t *walk(const ck_Document *document, const char *path, bool *is_whole) {
     // libyaml's readers take a non-const document but do not write to it
     yaml_document_t *yaml = (yaml_document_t *)&document->yaml;
     yaml_node_t *node = yaml_document_get_root_node(yaml);
+    *is_whole = true;
     while (node && *path) {
         yaml_node_t *child;
         if (*path == '[') {
@@ -129,10 +147,22 @@ yaml_node_t *ck_document_find(const ck_Document *document, const char *path) {
             child = child_by_key(yaml, node, path, length);
             path += length;
         }
+        *is_whole = child != NULL;
         if (!child) break;
         node = child;
     }
     return node;
+}
+
+yaml_node_t *ck_document_find(const ck_Document *document, const char *path) {
+    bool is_whole;
+    return walk(document, path, &is_whole);
+}
+
+yaml_node_t *ck_document_at(const ck_Document *document, const char *path) {
+    bool is_whole;
+    yaml_node_t *node = walk(document, path, &is_whole);
+    return is_whole ? node : NULL;
 }
 
 ck_Status ck_document_fail(const ck_Document *document, const yaml_node_t *node, ck_Error *error, const char *format,

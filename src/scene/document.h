@@ -11,17 +11,22 @@
 #define CK_DOCUMENT_MAX_BYTES (16u << 20)
 
 typedef struct ck_Document {
-    char *path;
+    char *path; // as it was given, with its changes
+    char *file; // without them
     unsigned char *text;
     size_t length;
     yaml_document_t yaml;
     int has_yaml;
 } ck_Document;
 
-// Reads and parses a file. Refuses what is not a regular file, is empty, or is larger than CK_DOCUMENT_MAX_BYTES.
-// Errors: CK_BAD_INPUT with file:line:column, CK_NO_MEMORY, CK_IO. Free with ck_document_free in any case.
+// Reads and parses a file, with the changes that its path has: see change.h. Refuses what is not a regular file, is
+// empty, or is larger than CK_DOCUMENT_MAX_BYTES. Errors: CK_BAD_INPUT with file:line:column, CK_NO_MEMORY, CK_IO. Free
+// with ck_document_free in any case.
 ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error);
 void ck_document_free(ck_Document *document);
+
+// The node at a dotted path, or NULL.
+yaml_node_t *ck_document_at(const ck_Document *document, const char *path);
 
 // The node at a dotted path such as "network.bars[3]". Where the path ends early, its deepest existing part.
 yaml_node_t *ck_document_find(const ck_Document *document, const char *path);

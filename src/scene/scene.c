@@ -1,5 +1,7 @@
 #include "scene.h"
 
+#include "change.h"
+#include "resize.h"
 #include "scene_check.h"
 #include "scene_schema.h"
 
@@ -7,6 +9,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Aliases could make a small file describe an enormous scene; nobody needs them in one.
 static const cyaml_config_t cyaml = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_NO_ALIAS};
@@ -39,6 +42,38 @@ static bool read_settings(ck_Scene *scene) {
     return true;
 }
 
+// The file's body at its resolution, in its own place.
+static ck_Status resize(ck_Scene *scene, ck_Error *error) {
+    ck_SceneFile *file = scene->file;
+    if (!(file->resolution > 0) || file->resolution == 1) return CK_OK;
+    const char *refusal = ck_scene_resize_refusal(file, file->resolution);
+    if (refusal)
+        return ck_scene_fail(scene, "resolution", error, "resolution is %g, which it cannot have: %s", file->resolution,
+                             refusal);
+    ck_SceneResized resized = {0};
+    ck_scene_resize(&resized, file, file->resolution);
+    if (file->cloth) *file->cloth = resized.cloth;
+    if (file->rope) *file->rope = resized.rope;
+    if (file->springs) *file->springs = resized.springs;
+    if (file->force) memcpy(file->force, resized.force, sizeof resized.force);
+    return CK_OK;
+}
+
+// A changed scene is another one, and its name says which.
+static bool rename_changed(ck_SceneFile *file, const char *path) {
+    char name[200], suffix[120];
+    ck_Change change;
+    for (int place = 0; ck_change_next(path, &place, &change);)
+        if (change.key_length == 4 && !strncmp(change.key, "name", 4)) return true;
+    if (!*ck_change_name(suffix, sizeof suffix, path)) return true;
+    snprintf(name, sizeof name, "%.79s%s", file->name, suffix);
+    char *longer = strdup(name);
+    if (!longer) return false;
+    free(file->name);
+    file->name = longer;
+    return true;
+}
+
 ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
     *scene = (ck_Scene){0};
     ck_Status status = ck_document_load(&scene->document, path, error);
@@ -50,8 +85,9 @@ ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
     if (result) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, cyaml_strerror(result));
     ck_SceneTime *time = &scene->file->time;
     if (time->fps > 0) time->step = 1 / time->fps;
-    if (!read_settings(scene)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
-    return CK_OK;
+    if (!read_settings(scene) || !rename_changed(scene->file, path))
+        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    return resize(scene, error);
 }
 
 void ck_scene_free(ck_Scene *scene) {

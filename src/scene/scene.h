@@ -182,6 +182,7 @@ typedef struct ck_SceneTime {
 // The part of a scene that the file's schema fills.
 typedef struct ck_SceneFile {
     char *name, *about;
+    double resolution; // segments a row over what the body says, the material and size its; 0: 1
     ck_SceneCloth *cloth;
     ck_SceneRope *rope;
     ck_SceneNetwork *network;
@@ -223,9 +224,10 @@ typedef struct ck_Scene {
     int setting_count;
 } ck_Scene;
 
-// Loads and checks a scene file: keys, types and the range of every single value.
-// What several values must agree on (pins and the body, bars and nodes) is checked by ck_model_build.
-// Errors: CK_BAD_INPUT with file:line:column, what is wrong and what would be right; CK_NO_MEMORY; CK_IO.
+// Loads and checks a scene file, with the changes that its path has (change.h), which its name then tells: keys, types
+// and the range of every single value. What several values must agree on (pins and the body, bars and nodes) is checked
+// by ck_model_build. Errors: CK_BAD_INPUT with file:line:column, what is wrong and what would be right; CK_NO_MEMORY;
+// CK_IO.
 ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error);
 
 // Accepts a zeroed scene.

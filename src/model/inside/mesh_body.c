@@ -9,7 +9,7 @@
 #include <string.h>
 
 char *ck_body_file(const ck_Scene *scene, const char *file) {
-    const char *folder = scene->document.path, *end = strrchr(folder, '/');
+    const char *folder = scene->document.file, *end = strrchr(folder, '/');
     char *path;
     if (*file == '/' || !end) return strdup(file);
     return asprintf(&path, "%.*s/%s", (int)(end - folder), folder, file) < 0 ? NULL : path;

@@ -6,6 +6,7 @@
 #define REQUIRED CYAML_FLAG_DEFAULT
 
 const ck_RangeRule ck_scene_ranges[] = {
+    {"resolution", CK_RANGE_POSITIVE},
     {"cloth.rows", CK_RANGE_POSITIVE},
     {"cloth.columns", CK_RANGE_POSITIVE},
     {"cloth.spacing", CK_RANGE_POSITIVE},
@@ -313,6 +314,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_MAPPING_PTR("rope", OPTIONAL, ck_SceneFile, rope, rope_fields),
     CYAML_FIELD_MAPPING_PTR("network", OPTIONAL, ck_SceneFile, network, network_fields),
     CYAML_FIELD_MAPPING_PTR("mesh", OPTIONAL, ck_SceneFile, mesh, mesh_fields),
+    CYAML_FIELD_FLOAT("resolution", OPTIONAL, ck_SceneFile, resolution),
     CYAML_FIELD_MAPPING_PTR("springs", OPTIONAL, ck_SceneFile, springs, springs_fields),
     CYAML_FIELD_MAPPING_PTR("material", OPTIONAL, ck_SceneFile, material, material_fields),
     CYAML_FIELD_MAPPING_PTR("wind", OPTIONAL, ck_SceneFile, wind, wind_fields),

@@ -1,0 +1,147 @@
+#include "change.h"
+
+#include "names.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define KEY_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.[]"
+
+// The next "@KEY=" of a text; NULL: none. length  of the key
+static const char *find_change(const char *text, int *length) {
+    for (const char *at = strchr(text, '@'); at; at = strchr(at + 1, '@')) {
+        *length = (int)strspn(at + 1, KEY_LETTERS);
+        if (*length && at[1 + *length] == '=') return at;
+    }
+    return NULL;
+}
+
+int ck_change_file_length(const char *word) {
+    int length;
+    const char *at = find_change(word, &length);
+    return at ? (int)(at - word) : (int)strlen(word);
+}
+
+bool ck_change_next(const char *word, int *place, ck_Change *change) {
+    int next_length;
+    const char *at = find_change(word + *place, &change->key_length);
+    if (!at) return false;
+    change->key = at + 1;
+    change->value = change->key + change->key_length + 1;
+    const char *next = find_change(change->value, &next_length);
+    change->value_length = next ? (int)(next - change->value) : (int)strlen(change->value);
+    *place = (int)(change->value - word) + change->value_length;
+    return true;
+}
+
+// The byte of a text at a mark, which counts characters.
+static size_t byte_at(const ck_Document *document, yaml_mark_t mark) {
+    const unsigned char *text = document->text;
+    size_t at = 0;
+    for (size_t line = 0; line < mark.line && at < document->length; at++) line += text[at] == '\n';
+    if (!mark.line && document->length > 2 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf) at = 3;
+    for (size_t column = 0; column < mark.column && at < document->length; column++) {
+        at++;
+        while (at < document->length && (text[at] & 0xc0) == 0x80) at++;
+    }
+    return at;
+}
+
+// Puts a text in place of some bytes. False when out of memory.
+static bool splice(ck_Document *document, size_t from, size_t to, const char *text) {
+    const size_t length = strlen(text), rest = document->length - to;
+    unsigned char *grown = malloc(from + length + rest + 1);
+    if (!grown) return false;
+    memcpy(grown, document->text, from);
+    memcpy(grown + from, text, length);
+    memcpy(grown + from + length, document->text + to, rest);
+    free(document->text);
+    document->text = grown;
+    document->length = from + length + rest;
+    return true;
+}
+
+// A mapping's new key: before what it has, so that its own lines stay whole.
+static bool add_key(ck_Document *document, const yaml_node_t *mapping, const char *key, const char *value) {
+    const size_t start = byte_at(document, mapping->start_mark);
+    const bool is_flow = mapping->data.mapping.style == YAML_FLOW_MAPPING_STYLE;
+    char *text;
+    int made = is_flow ? asprintf(&text, "%s: %s, ", key, value)
+                       : asprintf(&text, "%s: %s\n%*s", key, value, (int)mapping->start_mark.column, "");
+    if (made < 0) return false;
+    const bool fits = splice(document, start + is_flow, start + is_flow, text);
+    free(text);
+    return fits;
+}
+
+// The rest of a key that has no place yet, as a value: "a.b" of v is {b: v} under a. NULL without memory.
+static char *nest(const char *keys, const char *value) {
+    const char *dot = strchr(keys, '.');
+    char *inner = dot ? nest(dot + 1, value) : strdup(value), *text = NULL;
+    if (dot && inner && asprintf(&text, "{%.*s: %s}", (int)strcspn(dot + 1, "."), dot + 1, inner) < 0) text = NULL;
+    if (dot) free(inner);
+    return dot ? text : inner;
+}
+
+// How much of a key there is: the deepest node and what is left of the key below it.
+static const yaml_node_t *deepest(const ck_Document *document, const char *key, const char **rest) {
+    char part[200];
+    const yaml_node_t *node = yaml_document_get_root_node((yaml_document_t *)&document->yaml);
+    *rest = key;
+    for (size_t at = 0; key[at];) {
+        at += strcspn(key + at + 1, ".[") + 1;
+        snprintf(part, sizeof part, "%.*s", (int)at, key);
+        const yaml_node_t *found = ck_document_at(document, part);
+        if (!found) break;
+        node = found;
+        *rest = key + at + (key[at] == '.');
+    }
+    return node;
+}
+
+ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Error *error) {
+    char key[200], *value = strndup(change->value, (size_t)change->value_length), *nested = NULL;
+    const char *rest;
+    snprintf(key, sizeof key, "%.*s", change->key_length, change->key);
+    bool fits = value != NULL;
+    ck_Status status = CK_OK;
+    const yaml_node_t *node = deepest(document, key, &rest);
+    if (!change->value_length)
+        status = ck_fail(error, CK_BAD_INPUT, "%s: %s has no value; it must read @KEY=VALUE", document->path, key);
+    else if (!*rest)
+        fits = fits && splice(document, byte_at(document, node->start_mark), byte_at(document, node->end_mark), value);
+    else if (node->type != YAML_MAPPING_NODE || strchr(rest, '['))
+        status = ck_document_fail(document, node, error, "there is no place for %s here", key);
+    else if (fits) {
+        char first[200];
+        snprintf(first, sizeof first, "%.*s", (int)strcspn(rest, "."), rest);
+        nested = nest(rest, value);
+        fits = nested && add_key(document, node, first, nested);
+    }
+    free(nested);
+    free(value);
+    return fits || status ? status : ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
+}
+
+char *ck_change_name(char *name, size_t size, const char *word) {
+    ck_Change change;
+    size_t used = 0;
+    *name = 0;
+    for (int place = 0; ck_change_next(word, &place, &change);) {
+        // the last part of a key says enough
+        int from = change.key_length;
+        while (from > 0 && change.key[from - 1] != '.') from--;
+        const int length = change.key_length + 1 + change.value_length;
+        if (used + 2 < size) name[used++] = '-';
+        for (int i = from; i < length && used + 1 < size; i++) {
+            const char letter = change.key[i];
+            if (letter == '=')
+                name[used++] = '_';
+            else if (strchr(CK_PLAIN_LETTERS, letter))
+                name[used++] = letter;
+        }
+        name[used] = 0;
+    }
+    return name;
+}
