@@ -30,7 +30,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_FORM = 4096, // --json, --markdown
     CK_TAKES_RECORDING = 8192,
     CK_TAKES_FORMAT = 16384,
-    CK_TAKES_SPRING = 32768
+    CK_TAKES_SPRING = 32768,
+    CK_TAKES_STUDY = 65536
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -50,7 +51,7 @@ extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_com
     ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_refine,
     ck_command_merge, ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score,
     ck_command_export, ck_command_conform, ck_command_diff, ck_command_new_engine, ck_command_means,
-    ck_command_findings;
+    ck_command_findings, ck_command_study;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -71,6 +72,10 @@ typedef struct ck_Arguments {
     bool runs_nothing;
     bool appends, forces;                 // into a directory that holds other results: keeps them, replaces them
     int rounds, largest;                  // of bench
+    double case_limit, study_timeout;     // of study: s of wall time of a case, and of all; 0: any
+    bool is_part, uses_slurm, finishes, is_dry;
+    const char *partition, *slurm_time; // as sbatch takes them; NULL: not given
+    int array, array_limit, cores;      // parts, at a time, and of each
     double fps, mass, stiffness, damping; // of means: frames a second, kg, N/m, N*s/m
     char question[2048];                  // what is asked, without the scene, where to and how fast; words between tabs
     double error;                         // a tolerance; NAN: none
@@ -134,7 +139,7 @@ typedef void ck_Show(ck_Arguments *arguments, const ck_Comparison *comparison);
 
 // Loads every scene before any runs, runs them, writes the CSVs where an --out is given, and calls show for each.
 // Errors: CK_BAD_INPUT, CK_IO, CK_NO_MEMORY.
-ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *error);
+ck_Status ck_command_compare_scenes(ck_Arguments *arguments, ck_Show *show, ck_Error *error);
 
 // The exit status of a command that has done its work: its answer is ended, or an error is told on stderr; arguments
 // are freed in any case.

@@ -1,5 +1,6 @@
 #include "command.h"
 #include "names.h"
+#include "tables.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -12,6 +13,7 @@
 static const ck_Command *const commands[] = {
     &ck_command_demo,       &ck_command_list,      &ck_command_run,      &ck_command_compare, &ck_command_check,
     &ck_command_precision,  &ck_command_stability, &ck_command_tune,     &ck_command_needs,   &ck_command_refine,
+    &ck_command_study,
     &ck_command_fit,        &ck_command_conform,   &ck_command_export,   &ck_command_score,   &ck_command_code,
     &ck_command_new_engine, &ck_command_means,     &ck_command_findings, &ck_command_diff,    &ck_command_merge,
     &ck_command_report,     &ck_command_claims,    &ck_command_bench,
@@ -110,6 +112,7 @@ int main(int argc, char **argv) {
     // a reader that is gone, as head is, and a file that may not grow fail the write, not the work
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+    ck_machine_begin();
     int result = run(argc, argv);
     // what has failed has said so
     if ((!fflush(stdout) && !ferror(stdout)) || result) return result;

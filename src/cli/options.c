@@ -44,16 +44,16 @@ static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Er
 // Adding an option is one row here, and a member of ck_Arguments.
 static const Option table[] = {
     {"out", "DIR", 'o', CK_TAKES_OUT, TEXT, PLACE(out), .help = "write the CSVs into DIR", .is_way = true},
-    {"engine", "NAME", 'e', CK_TAKES_RUNS, OTHER, .fallback = "all", .read = ck_arguments_add_engines,
+    {"engine", "NAME", 'e', CK_TAKES_RUNS | CK_TAKES_STUDY, OTHER, .fallback = "all", .read = ck_arguments_add_engines,
      .help = "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
              "--fast', or a library as ./libmine.so; may be given several times"},
     {"set", "[ENGINE.]KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
      .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
     {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,
      .help = "threads a step, where an engine can share one: regular cloths"},
-    {"time-limit", "S", 0, CK_TAKES_RUNS, NUMBER, PLACE(options.limits.seconds), 0, 1e9,
+    {"time-limit", "S", 0, CK_TAKES_RUNS | CK_TAKES_STUDY, NUMBER, PLACE(options.limits.seconds), 0, 1e9,
      .help = "wall seconds that one run may take"},
-    {"memory-limit", "MIB", 0, CK_TAKES_RUNS, OTHER, .fallback = "4096", .read = set_memory,
+    {"memory-limit", "MIB", 0, CK_TAKES_RUNS | CK_TAKES_STUDY, OTHER, .fallback = "4096", .read = set_memory,
      .help = "memory that one run may take"},
     {"repeats", "N", 'r', CK_TAKES_TIMING, COUNT, PLACE(options.repeats), 0, CK_MAX_REPEATS,
      .fallback = "until the median is known to 2 %, or --enough", .help = "timed repeats, 0 to 99"},
@@ -75,6 +75,29 @@ static const Option table[] = {
      .help = "only every N-th case, from the I-th; 'clothcheck merge' joins the parts"},
     {"kept", NULL, 0, CK_TAKES_SHARD, FLAG, PLACE(runs_nothing), .is_way = true,
      .help = "run nothing: write what the journal in --out holds, or fail"},
+    {"case-limit", "S", 0, CK_TAKES_STUDY, NUMBER, PLACE(case_limit), 0, 1e9, .fallback = "3600",
+     .help = "wall seconds that a case may take, where it is more than a run"},
+    {"timeout", "S", 0, CK_TAKES_STUDY, NUMBER, PLACE(study_timeout), 0, 1e9, .fallback = "none", .is_way = true,
+     .help = "begin no case after so many wall seconds; the same command goes on there"},
+    {"part", NULL, 0, CK_TAKES_STUDY, FLAG, PLACE(is_part), .is_way = true,
+     .help = "as one of several processes, on one machine or on many, that share the cases in --out: end when there is "
+             "none left to take, and write no CSVs"},
+    {"slurm", NULL, 0, CK_TAKES_STUDY, FLAG, PLACE(uses_slurm), .is_way = true,
+     .help = "submit an array of parts to Slurm, and a job that writes the CSVs when they have ended"},
+    {"partition", "NAME", 0, CK_TAKES_STUDY, TEXT, PLACE(partition), .is_way = true, .help = "of --slurm"},
+    {"array", "N", 0, CK_TAKES_STUDY, COUNT, PLACE(array), 1, 10000, .fallback = "8", .is_way = true,
+     .help = "of --slurm: parts"},
+    {"array-limit", "N", 0, CK_TAKES_STUDY, COUNT, PLACE(array_limit), 1, 10000, .fallback = "all", .is_way = true,
+     .help = "of --slurm: parts at a time"},
+    {"cores", "N", 0, CK_TAKES_STUDY, COUNT, PLACE(cores), 1, 1024, .fallback = "1", .is_way = true,
+     .help = "of --slurm: cores of a part"},
+    {"slurm-time", "TIME", 0, CK_TAKES_STUDY, TEXT, PLACE(slurm_time), .is_way = true,
+     .help = "of --slurm: what a part may take, as 2:00:00; what is left is submitted again"},
+    {"dry-run", NULL, 0, CK_TAKES_STUDY, FLAG, PLACE(is_dry), .is_way = true,
+     .help = "say what would be run, with --slurm the scripts, and run nothing"},
+    {"finish", NULL, 0, CK_TAKES_STUDY, FLAG, PLACE(finishes), .is_way = true,
+     .help = "the last job of --slurm: write the CSVs where all cases are there, else submit again what is left, as "
+             "long as that gets further"},
     {"error", "X", 0, CK_TAKES_GOAL | CK_TAKES_ERROR, NUMBER, PLACE(error), 0, 1e6,
      .help = "a tolerance, in units of size"},
     {"timeout", "S", 0, CK_TAKES_GOAL, NUMBER, PLACE(timeout), 0, 1e9, .fallback = "60", .is_way = true,
@@ -117,7 +140,7 @@ static const Option table[] = {
      .help = "write the baseline anew, and print what moved"},
     {"append", NULL, 'a', CK_TAKES_KEEPING, FLAG, PLACE(appends), .is_way = true,
      .help = "keep the results of other scenes that --out holds; of tune, of other engines, too"},
-    {"force", NULL, 'f', CK_TAKES_KEEPING, FLAG, PLACE(forces), .is_way = true,
+    {"force", NULL, 'f', CK_TAKES_KEEPING | CK_TAKES_STUDY, FLAG, PLACE(forces), .is_way = true,
      .help = "replace whatever results --out holds"},
     {"json", NULL, 0, CK_TAKES_FORM, OTHER, .read = set_json, .is_way = true, .help = "the answer as JSON"},
     {"markdown", NULL, 0, CK_TAKES_FORM, OTHER, .read = set_markdown, .is_way = true,
@@ -365,12 +388,16 @@ static ck_Status add_word(ck_Arguments *arguments, const ck_Command *command, ch
     return CK_OK;
 }
 
+// The numbers of long options must not be letters.
+#define FIRST_LONG 256
+
 // What getopt_long reads by; letters begins with a colon, so that a missing value is told from an unknown option.
 static void list_options(const ck_Command *command, struct option *options, char *letters) {
     *letters++ = ':';
     for (int i = 0; i < OPTIONS; i++) {
         if (!(table[i].groups & command->groups)) continue;
-        *options++ = (struct option){table[i].name, table[i].value ? required_argument : no_argument, NULL, i};
+        *options++ =
+            (struct option){table[i].name, table[i].value ? required_argument : no_argument, NULL, FIRST_LONG + i};
         if (!table[i].letter) continue;
         *letters++ = table[i].letter;
         if (table[i].value) *letters++ = ':';
@@ -380,11 +407,10 @@ static void list_options(const ck_Command *command, struct option *options, char
 }
 
 static const Option *option_of(int found) {
-    for (int i = 0; found >= OPTIONS && i < OPTIONS; i++)
+    for (int i = 0; found < FIRST_LONG && i < OPTIONS; i++)
         if (table[i].letter == found) return &table[i];
-    return &table[found];
+    return &table[found - FIRST_LONG];
 }
-_Static_assert(OPTIONS < 'A', "the numbers of long options must not be letters");
 
 ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv,
                             ck_Error *error) {
@@ -400,6 +426,9 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
                                 .stiffness = 1000,
                                 .rounds = 7,
                                 .largest = 1024,
+                                .case_limit = 3600,
+                                .array = 8,
+                                .cores = 1,
                                 .baseline = CK_BASELINE_PATH,
                                 .out = command->out};
     arguments->options.overrides = arguments->overrides;
@@ -415,7 +444,7 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
     for (int found; !status && (found = getopt_long(argc, argv, letters, options, NULL)) != -1;) {
         if (found == '?' || found == ':') {
             char letter[3] = {'-', (char)optopt};
-            bool is_letter = optopt > ' ' && optopt < 127 && optopt >= OPTIONS;
+            bool is_letter = optopt > ' ' && optopt < 127;
             return fail_option(command, found, is_letter ? letter : argv[optind - 1], error);
         }
         const Option *option = option_of(found);

@@ -136,7 +136,7 @@ static ck_Status open_unfinished(ck_Unfinished *unfinished, ck_Arguments *argume
     return status;
 }
 
-ck_Status ck_command_study(ck_Arguments *arguments, ck_Show *show, ck_Error *error) {
+ck_Status ck_command_compare_scenes(ck_Arguments *arguments, ck_Show *show, ck_Error *error) {
     ck_Tables tables = {0};
     ck_Unfinished unfinished = {0};
     int count = 0;

@@ -156,7 +156,9 @@ ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *
     if (!comparison->runs || !comparison->predictions || !comparison->consistency || !comparison->folds)
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (options->progress) options->progress(comparison->model.name, "truth", "finding");
-    ck_Status status = ck_truth_create(&comparison->truth, &comparison->model, options->cache, &options->limits, error);
+    ck_Status status = comparison->truth.form ? CK_OK
+                                              : ck_truth_create(&comparison->truth, &comparison->model, options->cache,
+                                                                &options->limits, error);
     if (!status) status = measure_all(comparison, options, error);
     if (!status) status = time_all(comparison, options, error);
     return status;

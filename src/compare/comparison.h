@@ -61,7 +61,8 @@ ck_Settings ck_comparison_settings(const ck_Engine *engine, const ck_Scene *scen
 // Errors: CK_BAD_INPUT, CK_NO_MEMORY, CK_IO. Free with ck_comparison_free in any case.
 ck_Status ck_comparison_load(ck_Comparison *comparison, const char *path, ck_Error *error);
 
-// Finds the truth and runs every engine. Errors: CK_NO_MEMORY, CK_IO. How the engines fared is in the runs.
+// Finds the truth, where it is not there yet, and runs every engine. Errors: CK_NO_MEMORY, CK_IO. How the engines fared
+// is in the runs.
 ck_Status ck_comparison_run(ck_Comparison *comparison, const ck_CompareOptions *options, ck_Error *error);
 
 // Frees what the runs and the truth hold, and keeps the scene. Accepts a zeroed comparison.

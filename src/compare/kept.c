@@ -41,6 +41,10 @@ static ck_Status read_table(ck_CsvTable *table, const char *directory, const ck_
 static ck_Status check_lost(const ck_Kept *kept, const ck_Layout *layout, bool keeps_others, ck_Error *error) {
     ck_CsvTable table;
     ck_Status status = read_table(&table, kept->directory, layout, error);
+    if (!status && table.width > table.column_count)
+        status =
+            ck_fail(error, CK_BAD_INPUT, "%s/%s: holds results of a study, which would be lost; give another --out",
+                    kept->directory, layout->file);
     for (int i = 0; i < table.row_count && !status; i++) {
         const char *scene = ck_csv_table_text(&table, i, 0), *engine = ck_csv_text_of(&table, i, "engine");
         if (has_scene(kept, scene) && has_engine(kept, engine)) continue;
@@ -64,7 +68,7 @@ typedef struct MachineCheck {
 
 static void check_fact(void *context, const char *key, const char *value) {
     MachineCheck *check = context;
-    bool is_same = !strcmp(key, "date");
+    bool is_same = false;
     for (int i = 0; i < check->there.row_count && !is_same; i++)
         is_same = !strcmp(ck_csv_table_text(&check->there, i, 0), key) &&
                   !strcmp(ck_csv_table_text(&check->there, i, 1), value);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping keeping, bool by_engine,
@@ -212,13 +213,33 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
     for (int i = 0; i < comparison->run_count; i++) {
         add_run(&tables->csv[CK_RUNS], comparison, &comparison->runs[i], options);
         add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
-        add_series(&tables->csv[CK_SERIES], comparison, comparison->runs[i].engine->name,
-                   &comparison->runs[i].trajectory);
+        if (tables->csv[CK_SERIES].whole.file)
+            add_series(&tables->csv[CK_SERIES], comparison, comparison->runs[i].engine->name,
+                       &comparison->runs[i].trajectory);
         add_metrics(&tables->csv[CK_METRICS], comparison, i);
         add_distances(&tables->csv[CK_METRICS], comparison, i);
     }
-    add_truth_series(&tables->csv[CK_SERIES], comparison);
+    if (tables->csv[CK_SERIES].whole.file) add_truth_series(&tables->csv[CK_SERIES], comparison);
     add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
+}
+
+ck_Status ck_tables_text(char **rows, const ck_Comparison *comparison, const ck_CompareOptions *options,
+                         bool has_series, ck_Error *error) {
+    ck_Tables tables = {0};
+    size_t sizes[CK_COMPARISON_LAYOUTS];
+    bool has_failed = false;
+    for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
+        rows[i] = NULL;
+        if (i == CK_MACHINE || (i == CK_SERIES && !has_series)) continue;
+        ck_csv_begin(&tables.csv[i], open_memstream(&rows[i], &sizes[i]), &ck_layouts[i]);
+        has_failed |= !tables.csv[i].whole.file;
+    }
+    if (!has_failed) ck_tables_add(&tables, comparison, options);
+    for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
+        FILE *file = tables.csv[i].whole.file;
+        if (file) has_failed |= fclose(file) != 0;
+    }
+    return has_failed ? ck_fail(error, CK_NO_MEMORY, "out of memory") : CK_OK;
 }
 
 ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error) {

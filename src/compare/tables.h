@@ -29,6 +29,11 @@ ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping ke
 // Adds the rows of one finished comparison. options are those it ran with.
 void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options);
 
+// The rows of a finished comparison's layouts as text, without their headers: [CK_COMPARISON_LAYOUTS], but those of
+// machine.csv, and of series.csv where it is not asked for. Errors: CK_NO_MEMORY. Free each of rows in any case.
+ck_Status ck_tables_text(char **rows, const ck_Comparison *comparison, const ck_CompareOptions *options,
+                         bool has_series, ck_Error *error);
+
 // Adds what is known of the machine, and gives the six files their names. Errors: CK_IO.
 ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error);
 
@@ -36,11 +41,17 @@ void ck_tables_discard(ck_Tables *tables);
 
 // What a timing depends on beside the code: processor, compiler, versions, how libraries were built, date.
 
-// Tells one fact after the other, the date last.
+// Tells one fact after the other.
 typedef void (*ck_MachineFact)(void *context, const char *key, const char *value);
 void ck_machine_tell(ck_MachineFact tell, void *context);
 
-// Adds rows of key and value.
+// The program with the commit that it is built of.
+const char *ck_machine_build(void);
+
+// Notes the machine's load before a command begins.
+void ck_machine_begin(void);
+
+// Adds rows of key and value: what is told above, and the command, the load before and after it, and the date.
 void ck_machine_write(ck_Csv *csv);
 
 // Writes machine.csv into a directory. Errors: CK_IO, CK_NO_MEMORY.

@@ -70,6 +70,10 @@ static const char *fault_of(ck_ColumnKind kind, const char *text) {
 
 static void check_header(Reader *reader, char *const *row) {
     const ck_Column *columns = reader->table->layout->columns;
+    const int own = reader->table->column_count;
+    // a study's columns
+    if (reader->column > own && (!strcmp(row[own], "host") || !strcmp(row[own], "of_scene")))
+        reader->table->width = reader->column;
     for (int i = 0; i < reader->table->column_count && i < reader->column && !reader->status; i++)
         if (strcmp(row[i], columns[i].name))
             reader->status = ck_fail(reader->error, CK_BAD_INPUT, "%s:1: column %d is '%.60s' where it must be %s",
@@ -89,16 +93,16 @@ static void check_row(Reader *reader, char *const *row) {
 static void end_row(int end, void *context) {
     (void)end;
     Reader *reader = context;
-    int wanted = reader->table->column_count;
     if (reader->status) return;
     bool is_header = reader->count == (size_t)reader->column;
     char *const *row = reader->table->fields + reader->count - reader->column;
     if (is_header) check_header(reader, row);
+    const int wanted = reader->table->width;
     if (!reader->status && reader->column != wanted)
         reader->status =
             ck_fail(reader->error, CK_BAD_INPUT, "%s:%d: %d columns where there must be %d: %s ... %s", reader->path,
                     reader->line, reader->column, wanted, reader->table->layout->columns[0].name,
-                    reader->table->layout->columns[wanted - 1].name);
+                    reader->table->layout->columns[reader->table->column_count - 1].name);
     if (!reader->status && !is_header) check_row(reader, row);
     reader->column = 0;
 }
@@ -154,6 +158,7 @@ ck_Status ck_csv_table_read(ck_CsvTable *table, const char *directory, const ck_
 
 ck_Status ck_csv_table_read_file(ck_CsvTable *table, const char *path, const ck_Layout *layout, ck_Error *error) {
     *table = (ck_CsvTable){.layout = layout, .column_count = ck_layout_column_count(layout)};
+    table->width = table->column_count;
     char *bytes = NULL;
     size_t size;
     ck_Status status = ck_file_read(&bytes, &size, path, error);
@@ -165,7 +170,7 @@ ck_Status ck_csv_table_read_file(ck_CsvTable *table, const char *path, const ck_
         Reader reader = {.table = table, .path = path, .free_text = table->text, .error = error};
         status = parse(&reader, bytes, size);
         // the header is no row
-        table->row_count = status ? 0 : (int)(reader.count / (size_t)table->column_count) - 1;
+        table->row_count = status ? 0 : (int)(reader.count / (size_t)table->width) - 1;
     }
     free(bytes);
     return status;
@@ -178,7 +183,13 @@ void ck_csv_table_free(ck_CsvTable *table) {
 }
 
 const char *ck_csv_table_text(const ck_CsvTable *table, int row, int column) {
-    return table->fields[(size_t)(row + 1) * table->column_count + column];
+    return table->fields[(size_t)(row + 1) * (size_t)table->width + (size_t)column];
+}
+
+int ck_csv_table_extra(const ck_CsvTable *table, const char *name) {
+    for (int i = table->column_count; i < table->width; i++)
+        if (!strcmp(table->fields[i], name)) return i;
+    return -1;
 }
 
 double ck_csv_table_number(const ck_CsvTable *table, int row, int column) {

@@ -6,10 +6,11 @@
 #include "status.h"
 
 typedef struct ck_CsvTable {
-    const ck_Layout *layout; // NULL: not read
-    int row_count, column_count;
-    char **fields; // [row_count][column_count]
-    char *text;    // that fields point into
+    const ck_Layout *layout;     // NULL: not read
+    int row_count, column_count; // of the layout
+    int width;                   // columns of the file: those of a study follow, host, of_scene and a swept key each
+    char **fields;               // [1 + row_count][width], the header first
+    char *text;                  // that fields point into
 } ck_CsvTable;
 
 // Reads directory's file of a layout. Only what is whole and of that layout is taken: errors name file, line and
@@ -26,6 +27,9 @@ void ck_csv_table_free(ck_CsvTable *table);
 const char *ck_csv_table_text(const ck_CsvTable *table, int row, int column);
 // NaN where the field is empty.
 double ck_csv_table_number(const ck_CsvTable *table, int row, int column);
+
+// The place of a study's column after those of the layout, by its name; −1: there is none.
+int ck_csv_table_extra(const ck_CsvTable *table, const char *name);
 
 // The same of a column by its name, which the layout must have.
 const char *ck_csv_text_of(const ck_CsvTable *table, int row, const char *column);

@@ -15,6 +15,10 @@ ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const ck_Layout *layou
     return CK_OK;
 }
 
+void ck_csv_begin(ck_Csv *csv, FILE *file, const ck_Layout *layout) {
+    *csv = (ck_Csv){.whole.file = file, .column_count = ck_layout_column_count(layout)};
+}
+
 static void next_column(ck_Csv *csv) {
     csv->column = (csv->column + 1) % csv->column_count;
     fputc(csv->column ? ',' : '\n', csv->whole.file);

@@ -17,6 +17,9 @@ typedef struct ck_Csv {
 // Errors: CK_IO, CK_NO_MEMORY. End with ck_csv_close or ck_csv_discard in any case.
 ck_Status ck_csv_open(ck_Csv *csv, const char *directory, const ck_Layout *layout, ck_Error *error);
 
+// Rows of a layout into a file of the caller's, without a header. It is the caller's to close.
+void ck_csv_begin(ck_Csv *csv, FILE *file, const ck_Layout *layout);
+
 // One field each. Rows end by themselves after the last column. Write errors are told by ck_csv_close.
 // A number is written so that it reads back the same (%.17g); NaN is an empty field.
 void ck_csv_text(ck_Csv *csv, const char *text);

@@ -38,6 +38,7 @@ typedef enum ck_LayoutName {
     CK_QUIRKS,
     CK_FIT,
     CK_CONFORM,
+    CK_STUDY,
     CK_HISTORY,
     CK_REPORT_LAYOUTS, // those above are in a report
     CK_BASELINE = CK_REPORT_LAYOUTS,

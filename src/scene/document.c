@@ -12,15 +12,15 @@
 #include <sys/stat.h>
 
 static ck_Status read_text(ck_Document *document, ck_Error *error) {
-    const char *path = document->file;
+    const char *path = document->file, *kind = document->kind->name;
     struct stat info;
     if (stat(path, &info))
-        return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a scene file", path, strerror(errno));
+        return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a %s file", path, strerror(errno), kind);
     if (!S_ISREG(info.st_mode))
-        return ck_fail(error, CK_BAD_INPUT, "%s: is not a file; give the path of a scene file", path);
+        return ck_fail(error, CK_BAD_INPUT, "%s: is not a file; give the path of a %s file", path, kind);
     if (info.st_size > CK_DOCUMENT_MAX_BYTES)
-        return ck_fail(error, CK_BAD_INPUT, "%s: is %lld bytes long; a scene file has at most %u", path,
-                       (long long)info.st_size, CK_DOCUMENT_MAX_BYTES);
+        return ck_fail(error, CK_BAD_INPUT, "%s: is %lld bytes long; a %s file has at most %u", path,
+                       (long long)info.st_size, kind, CK_DOCUMENT_MAX_BYTES);
     FILE *file = fopen(path, "rb");
     if (!file) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, strerror(errno));
     document->text = malloc((size_t)info.st_size + 1);
@@ -39,9 +39,9 @@ static ck_Status read_text(ck_Document *document, ck_Error *error) {
 
 // What would make a small file slow or ambiguous: deep nesting, aliases, and more than one document.
 static const char *objection(const yaml_event_t *event, int depth, int documents) {
-    if (depth > MAX_DEPTH) return "is nested too deep; a scene needs no more than a few levels";
+    if (depth > MAX_DEPTH) return "is nested too deep; a few levels are all it needs";
     if (event->type == YAML_ALIAS_EVENT) return "an alias is not supported; write the value out";
-    if (documents > 1) return "begins a second document; a scene file has one";
+    if (documents > 1) return "begins a second document; a file has one";
     return NULL;
 }
 
@@ -82,15 +82,15 @@ static ck_Status parse(ck_Document *document, ck_Error *error) {
                     parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
     else if (!yaml_document_get_root_node(&document->yaml))
         status = ck_fail(error, CK_BAD_INPUT,
-                         "%s:1:1: is empty; a scene needs name, a body (cloth, rope, network or mesh) and time",
-                         document->path);
+                         "%s:1:1: is empty; a %s needs %s", document->path, document->kind->name,
+                         document->kind->needs);
     yaml_parser_delete(&parser);
     return status;
 }
 
-ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error) {
+ck_Status ck_document_load(ck_Document *document, const char *path, const ck_DocumentKind *kind, ck_Error *error) {
     ck_Change change;
-    *document = (ck_Document){.path = strdup(path), .file = strndup(path, (size_t)ck_change_file_length(path))};
+    *document = (ck_Document){.kind = kind, .path = strdup(path), .file = strndup(path, (size_t)ck_change_file_length(path))};
     if (!document->path || !document->file) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
     ck_Status status = read_text(document, error);
     if (!status) status = parse(document, error);

@@ -10,9 +10,16 @@
 // The largest scene file that is read. A 100×100 network with every bar listed is below 1 MB.
 #define CK_DOCUMENT_MAX_BYTES (16u << 20)
 
+// What a file is of, in the words of an error.
+typedef struct ck_DocumentKind {
+    const char *name;  // "scene"
+    const char *needs; // "name, a body and time"
+} ck_DocumentKind;
+
 typedef struct ck_Document {
     char *path; // as it was given, with its changes
     char *file; // without them
+    const ck_DocumentKind *kind;
     unsigned char *text;
     size_t length;
     yaml_document_t yaml;
@@ -22,7 +29,7 @@ typedef struct ck_Document {
 // Reads and parses a file, with the changes that its path has: see change.h. Refuses what is not a regular file, is
 // empty, or is larger than CK_DOCUMENT_MAX_BYTES. Errors: CK_BAD_INPUT with file:line:column, CK_NO_MEMORY, CK_IO. Free
 // with ck_document_free in any case.
-ck_Status ck_document_load(ck_Document *document, const char *path, ck_Error *error);
+ck_Status ck_document_load(ck_Document *document, const char *path, const ck_DocumentKind *kind, ck_Error *error);
 void ck_document_free(ck_Document *document);
 
 // The node at a dotted path, or NULL.

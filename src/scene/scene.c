@@ -14,6 +14,8 @@
 // Aliases could make a small file describe an enormous scene; nobody needs them in one.
 static const cyaml_config_t cyaml = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_NO_ALIAS};
 
+static const ck_DocumentKind scene_kind = {"scene", "name, a body (cloth, rope, network or mesh) and time"};
+
 static const char *text_of(yaml_document_t *yaml, int node) {
     return (const char *)yaml_document_get_node(yaml, node)->data.scalar.value;
 }
@@ -76,7 +78,7 @@ static bool rename_changed(ck_SceneFile *file, const char *path) {
 
 ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
     *scene = (ck_Scene){0};
-    ck_Status status = ck_document_load(&scene->document, path, error);
+    ck_Status status = ck_document_load(&scene->document, path, &scene_kind, error);
     if (!status) status = ck_scene_check(&scene->document, &ck_scene_schema, error);
     if (status) return status;
     cyaml_err_t result = cyaml_load_data(scene->document.text, scene->document.length, &cyaml, &ck_scene_schema,

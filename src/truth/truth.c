@@ -253,6 +253,16 @@ static ck_Status solve(ck_Truth *truth, const ck_Model *model, const char *cache
     return CK_OK;
 }
 
+ck_Status ck_truth_without(ck_Truth *truth, const ck_Model *model, const char *kind, ck_Error *error) {
+    *truth = (ck_Truth){0};
+    ck_Status status = ck_truth_check(model, error);
+    if (status || !model->truth) return status;
+    truth->form = ck_truth_form_find(model->truth);
+    truth->reference.is_static = truth->form->is_static;
+    snprintf(truth->kind, sizeof truth->kind, "%s", kind);
+    return CK_OK;
+}
+
 ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, const ck_Limits *limits,
                           ck_Error *error) {
     *truth = (ck_Truth){0};

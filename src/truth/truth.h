@@ -67,6 +67,10 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error);
 ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *cache, const ck_Limits *limits,
                           ck_Error *error);
 
+// Where it is known already that the truth the model names is not to be had, and why: as ck_truth_create ends then.
+// Errors: CK_BAD_INPUT, CK_NO_MEMORY.
+ck_Status ck_truth_without(ck_Truth *truth, const ck_Model *model, const char *kind, ck_Error *error);
+
 // How far the truth's value of a metric may be off, in the metric's unit: the spread over all paths of the truth,
 // where a metric reads beyond the horizon twice the largest distance in an ensemble, and what reading it off frames
 // costs. NaN where the metric has no truth.

@@ -34,7 +34,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Arguments arguments;
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status) status = ck_arguments_all_scenes(&arguments, &error);
-    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status) status = ck_command_compare_scenes(&arguments, show, &error);
     if (!status) {
         ck_answer_line(&arguments.answer, CK_ANSWER_NOTE,
                        "sag is / size, errors are distances to the truth / size, ms CPU/s is CPU time per simulated "

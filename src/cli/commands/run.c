@@ -45,7 +45,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
                          arguments.scene_count);
     // it is only written to CSVs
     if (!arguments.out) arguments.options.consistency_budget = 0;
-    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status) status = ck_command_compare_scenes(&arguments, show, &error);
     if (!status) ck_answer_gap(&arguments.answer);
     if (!status)
         ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck compare %s --out out, then clothcheck report out",

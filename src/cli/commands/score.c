@@ -51,7 +51,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     if (!status) status = add_recording(&arguments, &error);
     arguments.by_engine = true;
     if (!arguments.out) arguments.options.consistency_budget = 0;
-    if (!status) status = ck_command_study(&arguments, show, &error);
+    if (!status) status = ck_command_compare_scenes(&arguments, show, &error);
     if (!status && arguments.out) {
         ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s", arguments.out);
         ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments.out);

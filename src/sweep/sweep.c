@@ -1,0 +1,300 @@
+#include "sweep.h"
+
+#include "change.h"
+#include "files.h"
+#include "tables.h"
+#include "time_scale.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// With more points than that each is loaded only where it is run.
+#define MOST_CHECKED 3000
+// And of an axis with more values so many, which lie evenly.
+#define MOST_VALUES 64
+
+// Whether each engine of a point is a case of its own: what compares engines with each other needs them together.
+static const bool is_by_engine[CK_STUDY_RUNS] = {[CK_STUDY_COMPARE] = true,
+                                                 [CK_STUDY_STABILITY] = true,
+                                                 [CK_STUDY_TUNE] = true,
+                                                 [CK_STUDY_NEEDS] = true,
+                                                 [CK_STUDY_CONFORM] = true};
+
+int ck_sweep_key_count(const ck_StudyFile *file) {
+    int count = 0;
+    for (int i = 0; i < file->axis_count; i++) count += file->axes[i].key_count;
+    return count;
+}
+
+// The axis of a key, and its number there.
+static int axis_of(const ck_StudyFile *file, int key, int *inner) {
+    int axis = 0;
+    while (key >= file->axes[axis].key_count) key -= file->axes[axis++].key_count;
+    *inner = key;
+    return axis;
+}
+
+const char *ck_sweep_key(const ck_StudyFile *file, int key) {
+    int inner, axis = axis_of(file, key, &inner);
+    return file->axes[axis].keys[inner];
+}
+
+int ck_sweep_scene(const ck_Sweep *sweep, int point) {
+    for (int i = 0; i < sweep->options->file->axis_count; i++) point /= sweep->options->file->axes[i].value_count;
+    return point;
+}
+
+// The number of an axis's value at a point: the last axis changes first.
+static int index_on(const ck_StudyFile *file, int point, int axis) {
+    for (int i = file->axis_count - 1; i > axis; i--) point /= file->axes[i].value_count;
+    return point % file->axes[axis].value_count;
+}
+
+const char *ck_sweep_value(const ck_Sweep *sweep, int point, int key) {
+    const ck_StudyFile *file = sweep->options->file;
+    int inner, axis = axis_of(file, key, &inner);
+    const ck_StudyAxis *at = &file->axes[axis];
+    return at->values[index_on(file, point, axis) * at->key_count + inner];
+}
+
+// Adds the changes of an axis's value to a word.
+static size_t add_changes(char *word, size_t used, const ck_StudyAxis *axis, int value) {
+    for (int k = 0; k < axis->key_count && used < CK_SWEEP_WORD; k++)
+        used += (size_t)snprintf(word + used, CK_SWEEP_WORD - used, "@%s=%s", axis->keys[k],
+                                 axis->values[value * axis->key_count + k]);
+    return used;
+}
+
+void ck_sweep_word(const ck_Sweep *sweep, int point, char word[CK_SWEEP_WORD]) {
+    const ck_StudyFile *file = sweep->options->file;
+    *word = 0;
+    if (!file->scene_count) return;
+    size_t used = (size_t)snprintf(word, CK_SWEEP_WORD, "%s", sweep->options->paths[ck_sweep_scene(sweep, point)]);
+    for (int i = 0; i < file->axis_count && used < CK_SWEEP_WORD; i++)
+        used = add_changes(word, used, &file->axes[i], index_on(file, point, i));
+    // settings last: a scene's name tells what is swept first
+    if (file->settings && used < CK_SWEEP_WORD) snprintf(word + used, CK_SWEEP_WORD - used, "%s", file->settings);
+}
+
+int ck_sweep_point(const ck_Sweep *sweep, int index, int *engine) {
+    *engine = -1;
+    if (index < sweep->truth_count) return sweep->truth_at[index];
+    *engine = (index - sweep->truth_count) % sweep->engine_count;
+    return (index - sweep->truth_count) / sweep->engine_count;
+}
+
+char *ck_sweep_folder(const char *directory) {
+    return ck_path_join(directory, "study");
+}
+
+static uint64_t hash_text(uint64_t value, const char *text) {
+    return ck_hash(value, text ? text : "", text ? strlen(text) + 1 : 1);
+}
+
+// Loads a scene with changes, as a check, and hashes it with the files that it names.
+static ck_Status check_word(const char *word, uint64_t *hash, bool *solves, ck_Error *error) {
+    ck_Comparison comparison;
+    ck_Status status = ck_comparison_load(&comparison, word, error);
+    if (!status) {
+        const ck_TruthForm *form = comparison.model.truth ? ck_truth_form_find(comparison.model.truth) : NULL;
+        if (solves) *solves = form && form->solve;
+        *hash =
+            ck_hash(ck_model_hash(&comparison.model), comparison.scene.document.text, comparison.scene.document.length);
+    }
+    ck_comparison_free(&comparison);
+    return status;
+}
+
+static bool names_file(const char *key) {
+    const size_t length = strlen(key);
+    return !strcmp(key, "file") || (length > 5 && !strcmp(key + length - 5, ".file"));
+}
+
+// One key after the other at its values, the others as the scene has them: what a file holds belongs to the case.
+static ck_Status check_axes(ck_Sweep *sweep, int scene, ck_Error *error) {
+    const ck_StudyFile *file = sweep->options->file;
+    char word[CK_SWEEP_WORD];
+    ck_Status status = CK_OK;
+    for (int i = 0; i < file->axis_count && !status; i++) {
+        const ck_StudyAxis *axis = &file->axes[i];
+        bool has_file = false;
+        for (int k = 0; k < axis->key_count; k++) has_file |= names_file(axis->keys[k]);
+        const int stride = has_file || axis->value_count <= MOST_VALUES ? 1 : axis->value_count / MOST_VALUES;
+        // with few points each is loaded as a whole: there keys may need one another
+        if (!has_file && sweep->point_count <= MOST_CHECKED) continue;
+        for (int value = 0; value < axis->value_count && !status; value += stride) {
+            uint64_t hash = 0;
+            size_t used = (size_t)snprintf(word, sizeof word, "%s", sweep->options->paths[scene]);
+            used = add_changes(word, used, axis, value);
+            status = check_word(word, &hash, NULL, error);
+            if (has_file) sweep->scene_hashes[scene] = ck_hash(sweep->scene_hashes[scene], &hash, sizeof hash);
+        }
+    }
+    return status;
+}
+
+// Springs, frames, and the substeps that stiffness asks for.
+static ck_Status find_work(const char *word, double *work, ck_Error *error) {
+    ck_Scene scene;
+    ck_Model model = {0};
+    double frequency = 0;
+    ck_Status status = ck_scene_load(&scene, word, error);
+    if (!status) status = ck_engines_check(&scene, error);
+    if (!status) status = ck_model_build(&model, &scene, error);
+    if (!status) ck_stability_frequency(&model, &frequency);
+    if (!status) *work = (model.spring_count + 1.0) * model.frame_count * fmax(1, frequency * model.step);
+    ck_model_free(&model);
+    ck_scene_free(&scene);
+    return status;
+}
+
+// The form of a point's truth is solved, not told: by the scene's, or the value of a swept one.
+static bool is_solved(const ck_Sweep *sweep, int point, const bool *solves) {
+    for (int k = 0; k < ck_sweep_key_count(sweep->options->file); k++) {
+        if (strcmp(ck_sweep_key(sweep->options->file, k), "truth")) continue;
+        const ck_TruthForm *form = ck_truth_form_find(ck_sweep_value(sweep, point, k));
+        return form && form->solve;
+    }
+    return solves[ck_sweep_scene(sweep, point)];
+}
+
+typedef struct TruthKey {
+    uint64_t hash;
+    int point;
+} TruthKey;
+
+static int compare_truths(const void *a, const void *b) {
+    const TruthKey *one = a, *other = b;
+    if (one->hash != other->hash) return one->hash < other->hash ? -1 : 1;
+    return one->point - other->point;
+}
+
+// All that a truth depends on: a setting of an engine is none of it.
+static uint64_t hash_truth(const ck_Sweep *sweep, int point) {
+    const ck_StudyFile *file = sweep->options->file;
+    uint64_t hash = hash_text(sweep->scene_hashes[ck_sweep_scene(sweep, point)], "truth");
+    for (int k = 0; k < ck_sweep_key_count(file); k++) {
+        if (!strncmp(ck_sweep_key(file, k), "settings.", 9)) continue;
+        hash = hash_text(hash_text(hash, ck_sweep_key(file, k)), ck_sweep_value(sweep, point, k));
+    }
+    hash = hash_text(hash, ck_machine_build());
+    return ck_hash(hash, &sweep->options->compare->limits.seconds, sizeof(double));
+}
+
+static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
+    const ck_SweepOptions *options = sweep->options;
+    const ck_StudyFile *file = options->file;
+    const ck_CompareOptions *compare = options->compare;
+    uint64_t hash = file->scene_count ? sweep->scene_hashes[ck_sweep_scene(sweep, point)] : CK_HASH_START;
+    for (int k = 0; k < ck_sweep_key_count(file); k++)
+        hash = hash_text(hash_text(hash, ck_sweep_key(file, k)), ck_sweep_value(sweep, point, k));
+    for (int i = 0; i < compare->engine_count; i++) {
+        if (sweep->is_by_engine && i != engine) continue;
+        hash = hash_text(hash_text(hash, compare->engines[i]->name), ck_engine_version(compare->engines[i]));
+    }
+    for (int i = 0; i < file->option_count; i++) hash = hash_text(hash, file->options[i]);
+    hash = hash_text(hash_text(hash, file->settings), ck_machine_build());
+    const double numbers[] = {file->run,
+                              compare->repeats,
+                              file->series,
+                              compare->limits.seconds,
+                              (double)compare->limits.memory_bytes,
+                              compare->limits.patience,
+                              (double)compare->seed};
+    return ck_hash(hash, numbers, sizeof numbers);
+}
+
+// Truths, each once, whatever points share it.
+static ck_Status find_truths(ck_Sweep *sweep, const bool *solves, ck_Error *error) {
+    TruthKey *truths = malloc(((size_t)sweep->point_count + 1) * sizeof *truths);
+    sweep->truth_of = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->truth_of);
+    sweep->truth_at = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->truth_at);
+    if (!truths || !sweep->truth_of || !sweep->truth_at) {
+        free(truths);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    int count = 0;
+    for (int point = 0; point < sweep->point_count; point++) {
+        sweep->truth_of[point] = -1;
+        if (sweep->options->file->run == CK_STUDY_COMPARE && is_solved(sweep, point, solves))
+            truths[count++] = (TruthKey){hash_truth(sweep, point), point};
+    }
+    qsort(truths, (size_t)count, sizeof *truths, compare_truths);
+    for (int i = 0; i < count; i++) {
+        if (!i || truths[i].hash != truths[i - 1].hash) sweep->truth_at[sweep->truth_count++] = truths[i].point;
+        sweep->truth_of[truths[i].point] = sweep->truth_count - 1;
+    }
+    free(truths);
+    return CK_OK;
+}
+
+static ck_Status find_keys(ck_Sweep *sweep, ck_Error *error) {
+    const double cases = sweep->truth_count + (double)sweep->point_count * sweep->engine_count;
+    if (cases > CK_SWEEP_MOST)
+        return ck_fail(error, CK_BAD_INPUT, "%s: it has %.0f cases; a study has at most %d",
+                       sweep->options->file->document.path, cases, CK_SWEEP_MOST);
+    sweep->case_count = (int)cases;
+    sweep->keys = malloc((size_t)sweep->case_count * sizeof *sweep->keys);
+    if (!sweep->keys) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    sweep->study = CK_HASH_START;
+    for (int i = 0; i < sweep->case_count; i++) {
+        int engine, point = ck_sweep_point(sweep, i, &engine);
+        sweep->keys[i] = engine < 0 ? hash_truth(sweep, point) : hash_case(sweep, point, engine);
+        sweep->study = ck_hash(sweep->study, &sweep->keys[i], sizeof sweep->keys[i]);
+    }
+    return CK_OK;
+}
+
+static ck_Status check_points(ck_Sweep *sweep, ck_Error *error) {
+    char word[CK_SWEEP_WORD];
+    ck_Status status = CK_OK;
+    for (int i = 0; i < sweep->point_count && !status; i++) {
+        sweep->work[i] = 1;
+        if (sweep->point_count > MOST_CHECKED || !sweep->options->file->scene_count) continue;
+        ck_sweep_word(sweep, i, word);
+        status = find_work(word, &sweep->work[i], error);
+    }
+    return status;
+}
+
+static ck_Status count_points(ck_Sweep *sweep, ck_Error *error) {
+    const ck_StudyFile *file = sweep->options->file;
+    double points = file->scene_count ? file->scene_count : 1;
+    for (int i = 0; i < file->axis_count; i++) points *= file->axes[i].value_count;
+    if (points > CK_SWEEP_MOST)
+        return ck_fail(error, CK_BAD_INPUT, "%s: it has %.0f points; a study has at most %d", file->document.path,
+                       points, CK_SWEEP_MOST);
+    sweep->point_count = (int)points;
+    return CK_OK;
+}
+
+ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Error *error) {
+    const ck_StudyFile *file = options->file;
+    *sweep = (ck_Sweep){.options = options, .is_by_engine = is_by_engine[file->run]};
+    sweep->engine_count = sweep->is_by_engine ? options->compare->engine_count : 1;
+    ck_Status status = count_points(sweep, error);
+    if (status) return status;
+    sweep->scene_hashes = calloc((size_t)file->scene_count + 1, sizeof *sweep->scene_hashes);
+    sweep->work = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->work);
+    bool *solves = calloc((size_t)file->scene_count + 1, sizeof *solves);
+    if (!sweep->scene_hashes || !sweep->work || !solves) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < file->scene_count && !status; i++) {
+        status = check_word(options->paths[i], &sweep->scene_hashes[i], &solves[i], error);
+        if (!status) status = check_axes(sweep, i, error);
+    }
+    if (!status) status = check_points(sweep, error);
+    if (!status) status = find_truths(sweep, solves, error);
+    if (!status) status = find_keys(sweep, error);
+    free(solves);
+    return status;
+}
+
+void ck_sweep_free(ck_Sweep *sweep) {
+    free(sweep->scene_hashes);
+    free(sweep->truth_of);
+    free(sweep->truth_at);
+    free(sweep->keys);
+    free(sweep->work);
+    *sweep = (ck_Sweep){0};
+}
