@@ -15,7 +15,7 @@ async function triedWays(scene, facts) {
 	const precision = await table("precision.csv");
 	if (!precision || facts.metric !== "position_rms") return [];
 	return precision.rows.filter((row) => row.scene === scene && row.status === "ok").map((row) => ({
-		engine: row.engine, source: "precision.csv", error: number(row.error),
+		engine: row.engine, source: "precision.csv", machine: row.host || "", error: number(row.error),
 		told: Math.max(number(row.error), facts.uncertainty), cost: 1e3 * number(row.cpu_s) / number(row.simulated_s),
 		substeps: number(row.substeps), iterations: number(row.iterations),
 	}));
@@ -28,7 +28,7 @@ async function automaticWays(scene, facts) {
 		const run = runs.rows.find((other) => other.scene === scene && other.engine === row.engine);
 		const part = isPart(row) ? `, of which ${readable(number(row.timed_s))} of ${readable(number(row.duration_s))} s were timed` : "";
 		return {
-			engine: row.engine, source: "runs.csv" + part, error: number(row.error),
+			engine: row.engine, source: "runs.csv" + part, machine: row.machine || "", error: number(row.error),
 			told: Math.max(number(row.error), facts.uncertainty), cost: number(row.cpu_ms_per_s),
 			substeps: number(run.substeps), iterations: number(run.iterations),
 		};
@@ -39,7 +39,15 @@ async function automaticWays(scene, facts) {
 async function waysToRun(scene, facts) {
 	const tried = await triedWays(scene, facts), studied = new Set(tried.map((way) => way.engine));
 	const automatic = (await automaticWays(scene, facts)).filter((way) => !studied.has(way.engine));
-	return [...tried, ...automatic].filter((way) => way.error >= 0 && way.cost > 0);
+	return ofOneMachine([...tried, ...automatic].filter((way) => way.error >= 0 && way.cost > 0));
+}
+
+// Costs of unlike machines say nothing of each other: those of the machine that ran most.
+function ofOneMachine(ways) {
+	const counts = new Map();
+	for (const way of ways) counts.set(way.machine, (counts.get(way.machine) || 0) + 1);
+	const [most] = [...counts.entries()].sort((a, b) => b[1] - a[1]);
+	return most ? ways.filter((way) => way.machine === most[0]) : ways;
 }
 
 // A setting counts where finer steps do no worse: else errors that cancel by chance would be recommended.

@@ -230,6 +230,8 @@ static pid_t start(void (*work)(void *), void *context, const ck_Limits *limits,
         // else what is buffered here would be printed twice
         fflush(NULL);
         child = fork();
+        // what work runs may start children of its own
+        if (child == 0) pthread_mutex_unlock(&starting);
         if (child == 0) be_child(work, context, ends[1], limits);
         const int why = errno;
         if (child > 0) setpgid(child, child);

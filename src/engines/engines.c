@@ -28,6 +28,9 @@ const ck_Engine *ck_engine_at(int index) {
     return index < own ? ck_engine_table[index] : added[index - own];
 }
 
+// In place of an engine's name: every one that has the setting.
+#define EVERY "all"
+
 const ck_Engine *ck_engine_find(const char *name) {
     for (int i = 0; i < ck_engine_count(); i++)
         if (!strcmp(ck_engine_at(i)->name, name)) return ck_engine_at(i);
@@ -39,7 +42,7 @@ ck_Status ck_engines_add(const ck_Engine *engine, ck_Error *error) {
     if (!length || length > 40 || *engine->name == '.' || strspn(engine->name, CK_PLAIN_LETTERS) != length)
         return ck_fail(error, CK_BAD_INPUT, "an engine cannot be named '%.60s': take at most 40 of " CK_PLAIN_LETTERS,
                        engine->name);
-    if (!strcmp(engine->name, "truth") || ck_engine_find(engine->name))
+    if (!strcmp(engine->name, "truth") || !strcmp(engine->name, EVERY) || ck_engine_find(engine->name))
         return ck_fail(error, CK_BAD_INPUT, "there is an engine %s already; give yours another name", engine->name);
     if (added_count == sizeof added / sizeof *added)
         return ck_fail(error, CK_BAD_INPUT, "at most %d engines from outside can be used at once", added_count);
@@ -52,8 +55,25 @@ const char *ck_engine_name(const void *table, int index) {
     return index < ck_engine_count() ? ck_engine_at(index)->name : NULL;
 }
 
+static ck_Status check_setting_of_all(const ck_Scene *scene, const ck_SceneSetting *setting, ck_Error *error) {
+    char wanted[100];
+    const ck_Setting *any = NULL;
+    for (int i = 0; i < ck_engine_count(); i++) {
+        const ck_Setting *row = ck_setting_find(ck_engine_at(i)->settings, setting->key);
+        if (row) any = row;
+        if (row && !ck_setting_takes(row, setting->value, wanted, sizeof wanted))
+            return ck_document_fail(&scene->document, setting->value_at, error,
+                                    "settings." EVERY ".%s is %.10g; for %s it must be %s", setting->key,
+                                    setting->value, ck_engine_at(i)->name, wanted);
+    }
+    return any ? CK_OK
+               : ck_document_fail(&scene->document, setting->key_at, error,
+                                  "unknown key %s in settings." EVERY ": no engine has it", setting->key);
+}
+
 static ck_Status check_setting(const ck_Scene *scene, const ck_SceneSetting *setting, ck_Error *error) {
     char known[400], hint[80], wanted[100];
+    if (!strcmp(setting->engine, EVERY)) return check_setting_of_all(scene, setting, error);
     const ck_Engine *engine = ck_engine_find(setting->engine);
     if (!engine)
         return ck_document_fail(&scene->document, setting->engine_at, error,
@@ -80,11 +100,13 @@ ck_Status ck_engines_check(const ck_Scene *scene, ck_Error *error) {
 
 ck_Settings ck_engine_scene_settings(const ck_Engine *engine, const ck_Scene *scene) {
     ck_Settings settings = {0};
-    for (int i = 0; i < scene->setting_count; i++) {
-        const ck_Setting *row = strcmp(scene->settings[i].engine, engine->name)
-                                    ? NULL
-                                    : ck_setting_find(engine->settings, scene->settings[i].key);
-        if (row) ck_settings_set(&settings, row->slot, scene->settings[i].value);
-    }
+    // its own ones count more than those of all
+    for (int own = 0; own < 2; own++)
+        for (int i = 0; i < scene->setting_count; i++) {
+            const ck_Setting *row = strcmp(scene->settings[i].engine, own ? engine->name : EVERY)
+                                        ? NULL
+                                        : ck_setting_find(engine->settings, scene->settings[i].key);
+            if (row) ck_settings_set(&settings, row->slot, scene->settings[i].value);
+        }
     return settings;
 }

@@ -34,6 +34,9 @@ void ck_findings_add(ck_Findings *findings, const char *kind, const char *scene,
     va_end(arguments);
 }
 
+// Rules look for each row's like: their cost is the square of the rows.
+#define MOST_RUNS 5000
+
 // A rule is one row.
 static const struct {
     ck_LayoutName needs;
@@ -48,7 +51,13 @@ static const struct {
 };
 
 ck_Status ck_findings_find(ck_Findings *findings, const ck_CsvTable *const *tables, ck_Error *error) {
+    const ck_CsvTable *runs = tables[CK_RUNS];
     *findings = (ck_Findings){0};
+    if (runs && runs->row_count > MOST_RUNS) {
+        ck_findings_add(findings, "note", "", "", "", "%d runs are too many to be set beside each other: read the CSVs",
+                        runs->row_count);
+        return findings->has_failed ? ck_fail(error, CK_NO_MEMORY, "out of memory") : CK_OK;
+    }
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++)
         if (tables[rules[i].needs]) rules[i].find(findings, tables);
     return findings->has_failed ? ck_fail(error, CK_NO_MEMORY, "out of memory") : CK_OK;

@@ -39,6 +39,7 @@ typedef enum ck_LayoutName {
     CK_FIT,
     CK_CONFORM,
     CK_STUDY,
+    CK_STUDY_CHARTS,
     CK_HISTORY,
     CK_REPORT_LAYOUTS, // those above are in a report
     CK_BASELINE = CK_REPORT_LAYOUTS,

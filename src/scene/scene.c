@@ -61,13 +61,14 @@ static ck_Status resize(ck_Scene *scene, ck_Error *error) {
     return CK_OK;
 }
 
-// A changed scene is another one, and its name says which.
+// A changed scene is another one, and its name says which: by what is changed after the name, where that is.
 static bool rename_changed(ck_SceneFile *file, const char *path) {
     char name[200], suffix[120];
     ck_Change change;
+    int from = 0;
     for (int place = 0; ck_change_next(path, &place, &change);)
-        if (change.key_length == 4 && !strncmp(change.key, "name", 4)) return true;
-    if (!*ck_change_name(suffix, sizeof suffix, path)) return true;
+        if (change.key_length == 4 && !strncmp(change.key, "name", 4)) from = place;
+    if (!*ck_change_name(suffix, sizeof suffix, path + from)) return true;
     snprintf(name, sizeof name, "%.79s%s", file->name, suffix);
     char *longer = strdup(name);
     if (!longer) return false;

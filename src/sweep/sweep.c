@@ -70,11 +70,13 @@ void ck_sweep_word(const ck_Sweep *sweep, int point, char word[CK_SWEEP_WORD]) {
     const ck_StudyFile *file = sweep->options->file;
     *word = 0;
     if (!file->scene_count) return;
-    size_t used = (size_t)snprintf(word, CK_SWEEP_WORD, "%s", sweep->options->paths[ck_sweep_scene(sweep, point)]);
+    const int scene = ck_sweep_scene(sweep, point);
+    size_t used = (size_t)snprintf(word, CK_SWEEP_WORD, "%s", sweep->options->paths[scene]);
+    // names tell what is swept, and not what is the same everywhere
+    if (file->settings && used < CK_SWEEP_WORD)
+        used += (size_t)snprintf(word + used, CK_SWEEP_WORD - used, "%s@name=%s", file->settings, sweep->names[scene]);
     for (int i = 0; i < file->axis_count && used < CK_SWEEP_WORD; i++)
         used = add_changes(word, used, &file->axes[i], index_on(file, point, i));
-    // settings last: a scene's name tells what is swept first
-    if (file->settings && used < CK_SWEEP_WORD) snprintf(word + used, CK_SWEEP_WORD - used, "%s", file->settings);
 }
 
 int ck_sweep_point(const ck_Sweep *sweep, int index, int *engine) {
@@ -93,7 +95,7 @@ static uint64_t hash_text(uint64_t value, const char *text) {
 }
 
 // Loads a scene with changes, as a check, and hashes it with the files that it names.
-static ck_Status check_word(const char *word, uint64_t *hash, bool *solves, ck_Error *error) {
+static ck_Status check_word(const char *word, uint64_t *hash, bool *solves, char **name, ck_Error *error) {
     ck_Comparison comparison;
     ck_Status status = ck_comparison_load(&comparison, word, error);
     if (!status) {
@@ -101,6 +103,8 @@ static ck_Status check_word(const char *word, uint64_t *hash, bool *solves, ck_E
         if (solves) *solves = form && form->solve;
         *hash =
             ck_hash(ck_model_hash(&comparison.model), comparison.scene.document.text, comparison.scene.document.length);
+        if (name) *name = strdup(comparison.model.name);
+        if (name && !*name) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
     ck_comparison_free(&comparison);
     return status;
@@ -127,7 +131,7 @@ static ck_Status check_axes(ck_Sweep *sweep, int scene, ck_Error *error) {
             uint64_t hash = 0;
             size_t used = (size_t)snprintf(word, sizeof word, "%s", sweep->options->paths[scene]);
             used = add_changes(word, used, axis, value);
-            status = check_word(word, &hash, NULL, error);
+            status = check_word(word, &hash, NULL, NULL, error);
             if (has_file) sweep->scene_hashes[scene] = ck_hash(sweep->scene_hashes[scene], &hash, sizeof hash);
         }
     }
@@ -277,10 +281,12 @@ ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Er
     if (status) return status;
     sweep->scene_hashes = calloc((size_t)file->scene_count + 1, sizeof *sweep->scene_hashes);
     sweep->work = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->work);
+    sweep->names = calloc((size_t)file->scene_count + 1, sizeof *sweep->names);
     bool *solves = calloc((size_t)file->scene_count + 1, sizeof *solves);
-    if (!sweep->scene_hashes || !sweep->work || !solves) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!sweep->scene_hashes || !sweep->work || !sweep->names || !solves)
+        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     for (int i = 0; i < file->scene_count && !status; i++) {
-        status = check_word(options->paths[i], &sweep->scene_hashes[i], &solves[i], error);
+        status = check_word(options->paths[i], &sweep->scene_hashes[i], &solves[i], &sweep->names[i], error);
         if (!status) status = check_axes(sweep, i, error);
     }
     if (!status) status = check_points(sweep, error);
@@ -291,6 +297,8 @@ ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Er
 }
 
 void ck_sweep_free(ck_Sweep *sweep) {
+    for (int i = 0; sweep->names && i < sweep->options->file->scene_count; i++) free(sweep->names[i]);
+    free(sweep->names);
     free(sweep->scene_hashes);
     free(sweep->truth_of);
     free(sweep->truth_at);

@@ -31,6 +31,7 @@ typedef struct ck_Sweep {
     int point_count, engine_count; // of a point; engine_count 1 where all engines are one case
     int truth_count, case_count;   // truths first, then engines of the first point, of the second …
     bool is_by_engine;
+    char **names; // of the scenes
     uint64_t *scene_hashes;
     int *truth_of;  // [points] the case of its truth; −1: it needs none
     int *truth_at;  // [truths] a point that has it

@@ -78,8 +78,10 @@ static void add_own_row(const Case *one) {
     free(row);
 }
 
-// Says that a case could not be run, which is a result.
+// Says that a case could not be run, which is a result. What a command of ours said is told without its own name.
 static void refuse(Case *one, const char *reason) {
+    const char *said = strstr(reason, "clothcheck: ");
+    if (said) reason = said + strlen("clothcheck: ");
     one->status = ck_run_status_names[CK_RUN_REFUSED];
     snprintf(one->reason, sizeof one->reason, "%s", reason);
     ck_text_plain(one->reason);
@@ -317,7 +319,7 @@ ck_Status ck_sweep_case(const ck_Sweep *sweep, int index, char **text, size_t *s
     one->point = ck_sweep_point(sweep, index, &one->engine);
     one->status = ck_run_status_names[CK_RUN_OK];
     one->start = ck_wall();
-    snprintf(one->reason, sizeof one->reason, "as it was asked");
+    snprintf(one->reason, sizeof one->reason, "finished");
     ck_sweep_word(sweep, one->point, one->word);
     snprintf(one->scene, sizeof one->scene, "%.250s", *one->word ? one->word : "none");
     one->out = open_memstream(text, size);

@@ -42,7 +42,7 @@ static bool set_columns(Results *results, int point, const char *host) {
     FILE *out = open_memstream(&results->columns, &size);
     if (!out) return false;
     add_field(out, host);
-    add_field(out, file->scene_count ? file->scenes[ck_sweep_scene(sweep, point)] : "");
+    add_field(out, file->scene_count ? sweep->names[ck_sweep_scene(sweep, point)] : "");
     for (int k = 0; k < ck_sweep_key_count(file); k++) add_field(out, ck_sweep_value(sweep, point, k));
     if (fclose(out)) return false;
     // a host's name has nothing that is quoted
@@ -164,7 +164,7 @@ static ck_Status write_machines(const char *directory, const char *folder, ck_Er
     ck_Csv csv = {0};
     ck_Status status = ck_csv_open(&csv, directory, &ck_layouts[CK_MACHINE], error);
     for (int i = 0; i < count; i++) {
-        char *path = ck_path_join(machines, hosts[i]->d_name), key[256];
+        char *path = ck_path_join(machines, hosts[i]->d_name), key[520];
         ck_CsvTable table = {0};
         if (!status && path) status = ck_csv_table_read(&table, path, &ck_layouts[CK_MACHINE], error);
         for (int row = 0; row < table.row_count && !status; row++) {
@@ -184,6 +184,41 @@ static ck_Status write_machines(const char *directory, const char *folder, ck_Er
     return status;
 }
 
+static bool is_numeric(const ck_StudyAxis *axis, int key) {
+    bool is = axis->value_count > 1;
+    for (int i = 0; i < axis->value_count && is; i++) {
+        char *end;
+        const char *text = axis->values[i * axis->key_count + key];
+        strtod(text, &end);
+        is = end != text && !*end;
+    }
+    return is;
+}
+
+static void add_chart(ck_Csv *csv, const char *x, const char *metric, const char *of) {
+    ck_csv_text(csv, x);
+    ck_csv_text(csv, metric);
+    ck_csv_text(csv, of);
+}
+
+// What the file asks for, or what is off against each swept number.
+static ck_Status write_charts(const ck_Sweep *sweep, ck_Error *error) {
+    static const char *const metrics[] = {"sag", "position_rms"};
+    const ck_StudyFile *file = sweep->options->file;
+    ck_Csv csv = {0};
+    if (file->run != CK_STUDY_COMPARE) return CK_OK;
+    ck_Status status = ck_csv_open(&csv, sweep->options->directory, &ck_layouts[CK_STUDY_CHARTS], error);
+    for (int i = 0; i < file->chart_count && !status; i++)
+        add_chart(&csv, file->charts[i].x, file->charts[i].metric, file->charts[i].of);
+    for (int i = 0; i < file->axis_count && !file->chart_count && !status; i++)
+        for (int k = 0; k < file->axes[i].key_count; k++)
+            for (int m = 0; m < 2 && is_numeric(&file->axes[i], k); m++)
+                add_chart(&csv, file->axes[i].keys[k], metrics[m], "error");
+    if (!status) status = ck_csv_close(&csv, error);
+    ck_csv_discard(&csv);
+    return status;
+}
+
 static ck_Status check_whole(const ck_Sweep *sweep, const ck_Store *store, ck_Error *error) {
     int missing = 0;
     for (int i = 0; i < sweep->case_count; i++) missing += !ck_store_find(store, sweep->keys[i]);
@@ -200,6 +235,7 @@ ck_Status ck_sweep_write(const ck_Sweep *sweep, ck_Error *error) {
     ck_Status status = folder ? ck_store_open(&store, folder, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = check_whole(sweep, &store, error);
     if (!status) status = add_cases(&results, &store, error);
+    if (!status) status = write_charts(sweep, error);
     if (!status) status = write_machines(directory, folder, error);
     for (int i = 0; i < CK_REPORT_LAYOUTS; i++) {
         if (results.files[i].file && !status) status = ck_whole_file_close(&results.files[i], error);

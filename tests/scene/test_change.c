@@ -61,7 +61,8 @@ static void test_names(void **state) {
         const char *changes, *name;
     } cases[] = {{"", "sheet"},
                  {"@drag=2@springs.stiffness=1e+02", "sheet-drag_2-stiffness_1e02"},
-                 {"@name=other@drag=2", "other"},
+                 {"@drag=2@name=other", "other"},
+                 {"@drag=2@name=other@force=[0, 0, 1]@cloth.mass=2", "other-force_001-mass_2"},
                  // a value may have an @ of its own
                  {"@about=a@b@drag=1", "sheet-about_ab-drag_1"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -1,5 +1,6 @@
 // Many scenes and many values of their keys, from one file.
 #include "asked_engines.h"
+#include "change.h"
 #include "command.h"
 #include "csv_reader.h"
 #include "files.h"
@@ -40,7 +41,8 @@ static int run_words(int count, char **words) {
 static ck_Status find_scene(char **path, const ck_StudyFile *file, const char *scene, ck_Error *error) {
     const char *end = strrchr(file->document.file, '/');
     char *beside = NULL;
-    const bool is_bare = !strchr(scene, '/') && !strchr(scene, '.');
+    const size_t length = (size_t)ck_change_file_length(scene);
+    const bool is_bare = !memchr(scene, '/', length) && !memchr(scene, '.', length);
     if (is_bare || *scene == '/' || !end) return ck_scene_path(path, scene, error);
     if (asprintf(&beside, "%.*s/%s", (int)(end - file->document.file), file->document.file, scene) < 0)
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -238,8 +240,8 @@ static ck_Status answer_cases(Study *study, ck_Error *error) {
             snprintf(text + strlen(text), sizeof text - strlen(text), "%s%d %s", *text ? ", " : "", counts[k],
                      ck_run_status_names[k]);
     if (!status)
-        ck_answer_line(answer, CK_ANSWER_SAYS, "%s: %d cases at %d points, %.3g s of work: %s", study->file.name,
-                       table.row_count, study->sweep.point_count, cost, text);
+        ck_answer_line(answer, CK_ANSWER_SAYS, "%s: %d cases at %d point%s, %.3g s of work: %s", study->file.name,
+                       table.row_count, study->sweep.point_count, study->sweep.point_count == 1 ? "" : "s", cost, text);
     ck_csv_table_free(&table);
     return status;
 }
@@ -260,7 +262,7 @@ static double find_value(const ck_CsvTable *table, const ck_StudyChart *chart, c
 static ck_Status answer_chart(Study *study, const ck_StudyChart *chart, ck_Error *error) {
     ck_Answer *answer = &study->arguments.answer;
     const ck_CompareOptions *options = &study->arguments.options;
-    ck_AnswerColumn columns[MOST_COLUMNS + 2] = {{"scene", "", -44, NULL}};
+    ck_AnswerColumn columns[MOST_COLUMNS + 2] = {{"scene", "", -56, NULL}};
     const int engines = options->engine_count < MOST_COLUMNS ? options->engine_count : MOST_COLUMNS;
     ck_CsvTable table = {0};
     char title[200], name[300], word[CK_SWEEP_WORD];
@@ -273,7 +275,7 @@ static ck_Status answer_chart(Study *study, const ck_StudyChart *chart, ck_Error
         ck_Scene scene;
         ck_sweep_word(&study->sweep, i, word);
         ck_Status loaded = ck_scene_load(&scene, word, NULL);
-        snprintf(name, sizeof name, "%s", loaded ? word : scene.file->name);
+        snprintf(name, sizeof name, "%.290s", loaded ? word : scene.file->name);
         ck_scene_free(&scene);
         ck_answer_text(answer, name);
         for (int k = 0; k < engines; k++)

@@ -217,6 +217,8 @@ static void gather(Costs *costs, const ck_CsvTable *const *tables, const Pair *p
         const char *scene = ck_csv_text_of(runs, i, "scene");
         int other = ck_row_is(runs, i, "engine", pair->engine) ? find(runs, scene, pair->other, NULL, NULL) : -1;
         if (other < 0 || !ck_row_is(runs, i, "status", "ok") || !ck_row_is(runs, other, "status", "ok")) continue;
+        const int host = ck_csv_table_extra(runs, "host");
+        if (host >= 0 && strcmp(ck_csv_table_text(runs, i, host), ck_csv_table_text(runs, other, host))) continue;
         if (is_talk(tables, i)) continue;
         int rows[2] = {find(metrics, scene, pair->engine, "metric", "position_rms"),
                        find(metrics, scene, pair->other, "metric", "position_rms")};

@@ -14,7 +14,7 @@
 static const ck_Chart charts[] = {
     {"summary", "Which engine for which scene: error, and the cheapest within 1 %",
      "scene,engine,status,metric,error,uncertainty,cpu_ms_per_s,timed_s,duration_s,class,is_cheapest,on_front,is_"
-     "better",
+     "better,machine",
      1300, 900, true, ck_chart_select_summary},
     {"cost", "error against cost at automatic settings",
      "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status,still_error", 760, 470, false, ck_chart_select_cost},
@@ -36,6 +36,7 @@ static const ck_Chart charts[] = {
     {"needs", "what the scene needs", "left_out,metric,excess", 860, 430, false, ck_chart_select_needs},
     {"refine", "what converges as the mesh gets finer", "engine,spacing_m,value,metric", 1080, 430, false,
      ck_chart_select_refine},
+    {"sweep", "The study", "engine,x,y,panel,key,metric,of,scene", 1080, 860, true, ck_chart_select_sweep},
     {"size", "Cost against size", "engine,particles,time_s,metric", 1080, 480, true, ck_chart_select_size},
 };
 #define CHARTS ((int)(sizeof charts / sizeof *charts))

@@ -54,6 +54,7 @@ int ck_chart_select_iterations(const ck_ReportData *data, const char *scene, FIL
 int ck_chart_select_stability(const ck_ReportData *data, const char *scene, FILE *out);
 int ck_chart_select_needs(const ck_ReportData *data, const char *scene, FILE *out);
 int ck_chart_select_refine(const ck_ReportData *data, const char *scene, FILE *out);
+int ck_chart_select_sweep(const ck_ReportData *data, const char *scene, FILE *out);
 int ck_chart_select_size(const ck_ReportData *data, const char *scene, FILE *out);
 
 #endif

@@ -31,7 +31,9 @@ static int class_of(const ck_Summary *one) {
 static bool is_cheapest(const ck_ReportData *data, const ck_Summary *one) {
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *other = &data->summary[i];
-        if (!strcmp(other->scene, one->scene) && class_of(other) <= 1 && other->cost < one->cost) return false;
+        if (!strcmp(other->scene, one->scene) && !strcmp(other->machine, one->machine) && class_of(other) <= 1 &&
+            other->cost < one->cost)
+            return false;
     }
     return class_of(one) <= 1 && one->cost > 0;
 }
@@ -40,9 +42,9 @@ int ck_chart_select_summary(const ck_ReportData *data, const char *scene, FILE *
     (void)scene;
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *one = &data->summary[i];
-        fprintf(out, "%s,%s,%s,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d,%d\n", one->scene, one->engine, one->status,
+        fprintf(out, "%s,%s,%s,%s,%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d,%d,%d,\"%s\"\n", one->scene, one->engine, one->status,
                 one->metric, one->error, one->uncertainty, 1e3 * one->cost, one->timed, one->duration, class_of(one),
-                is_cheapest(data, one), one->on_front, one->is_better);
+                is_cheapest(data, one), one->on_front, one->is_better, one->machine);
     }
     return data->summary_count;
 }

@@ -11,6 +11,7 @@
 #include <nettle/base64.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -194,14 +195,24 @@ static ck_Status pack_charts(const Page *page, ck_Error *error) {
     return status;
 }
 
+// A larger CSV would make the page slow to open.
+#define MOST_PACKED ((off_t)8 << 20)
+
+static bool is_packed(const Page *page, int layout) {
+    struct stat about;
+    char *path = ck_path_join(page->data->directory, ck_layouts[layout].file);
+    const bool is_small = path && !stat(path, &about) && about.st_size <= MOST_PACKED;
+    free(path);
+    return ck_report_table(page->data, layout) && layout != CK_SERIES && is_small;
+}
+
 static ck_Status write_report(const Page *page, ck_Error *error) {
     const ck_ReportData *data = page->data;
     write_contents(page);
     ck_Status status = CK_OK;
     // series of a whole comparison would make the page slow to open: they lie beside it
     for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++)
-        if (ck_report_table(data, i) && i != CK_SERIES)
-            status = pack_file(page, data->directory, ck_layouts[i].file, error);
+        if (is_packed(page, i)) status = pack_file(page, data->directory, ck_layouts[i].file, error);
     // what was summed up for the chart is what the page's first table is of
     if (!status && data->summary_count) status = pack_file(page, page->charts, "summary.csv", error);
     if (!status) status = pack_charts(page, error);

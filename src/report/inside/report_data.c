@@ -75,6 +75,8 @@ static ck_Status add_column(ck_ReportData *data, const ck_CsvTable *table, const
     ck_Status status = CK_OK;
     for (int row = 0; row < table->row_count && !status; row++) {
         const char *name = ck_csv_table_text(table, row, column);
+        // more are not shown one by one
+        if (!column && table->width > table->column_count && *count > CK_REPORT_MOST_POINTS) break;
         if (row && !strcmp(name, ck_csv_table_text(table, row - 1, column))) continue;
         bool is_truth = !strcmp(column_name, "engine") && !strcmp(name, "truth");
         if (!*name || is_truth) continue;
@@ -147,12 +149,23 @@ static int find_answer(const ck_CsvTable *metrics, const char *scene, const char
     return -1;
 }
 
+// The processor of a study's row, by its host. Cost: the rows of study.csv before that host's first.
+static const char *machine_of(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
+    const ck_CsvTable *study = ck_report_table(data, CK_STUDY);
+    const int column = ck_csv_table_extra(runs, "host");
+    const char *host = column < 0 ? "" : ck_csv_table_text(runs, row, column);
+    for (int i = 0; study && i < study->row_count && *host; i++)
+        if (!strcmp(ck_csv_text_of(study, i, "host"), host)) return ck_csv_text_of(study, i, "processor");
+    return host;
+}
+
 static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
     const ck_CsvTable *metrics = ck_report_table(data, CK_METRICS);
     ck_Summary one = {
         .scene = ck_csv_table_text(runs, row, 0),
         .engine = ck_csv_table_text(runs, row, 1),
         .status = ck_csv_text_of(runs, row, "status"),
+        .machine = machine_of(data, runs, row),
         .metric = "",
         .error = NAN,
         .uncertainty = NAN,
@@ -195,8 +208,8 @@ static void set_beside(const ck_ReportData *data, ck_Summary *one) {
 static bool is_beaten(const ck_ReportData *data, const ck_Summary *one) {
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *other = &data->summary[i];
-        if (other != one && ck_summary_counts(other) && !strcmp(other->scene, one->scene) && other->cost < one->cost &&
-            other->told <= 1.05 * one->told)
+        if (other != one && ck_summary_counts(other) && !strcmp(other->scene, one->scene) &&
+            !strcmp(other->machine, one->machine) && other->cost < one->cost && other->told <= 1.05 * one->told)
             return true;
     }
     return false;
@@ -229,7 +242,10 @@ ck_Status ck_report_data_read(ck_ReportData *data, const char *directory, ck_Err
     *data = (ck_ReportData){.directory = directory};
     ck_Status status = read_tables(data, error);
     if (!status) status = find_names(data, error);
-    if (!status) status = find_summary(data, error);
+    const ck_CsvTable *runs = ck_report_table(data, CK_RUNS);
+    const bool is_study = runs && runs->width > runs->column_count;
+    if (is_study && data->scene_count > CK_REPORT_MOST_POINTS) data->scene_count = 0;
+    if (!status && data->scene_count) status = find_summary(data, error);
     return status;
 }
 

@@ -14,16 +14,20 @@ typedef struct ck_Summary {
     double told;               // the error, or the uncertainty where that is larger: what is known of it
     double cost;               // s of CPU per simulated second; NaN: not timed
     double timed, duration;    // s that the cost is of, and the longest that any engine on the scene was timed
+    const char *machine;       // the processor that the cost is of, of a study: only those of one are alike; else ""
     bool is_better;            // than what moves nothing; true where there is no telling
     bool on_front;             // no engine is both cheaper and as near to the truth, of those that ended ok
 } ck_Summary;
+
+// A study of more points is shown by its charts alone: the CSVs have the points.
+#define CK_REPORT_MOST_POINTS 24
 
 typedef struct ck_ReportData {
     const char *directory;
     ck_CsvTable tables[CK_REPORT_LAYOUTS]; // layout NULL where the file is not there
     const char **scenes;                   // of all tables, in their order
-    int scene_count;
-    const char **engines; // those of the engine table first; "truth" is none
+    int scene_count;                       // 0 with more than CK_REPORT_MOST_POINTS: of a study
+    const char **engines;                  // those of the engine table first; "truth" is none
     int engine_count;
     ck_Summary *summary; // a row for each of runs.csv
     int summary_count;

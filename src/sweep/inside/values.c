@@ -91,13 +91,17 @@ static bool read_rule(const ck_Document *document, const yaml_node_t *node, Rule
            (!rule->is_log || (rule->low > 0 && rule->high > 0));
 }
 
-// Of twelve digits: a hundred thousandth of a step of any rule, and 1000 stays 1000.
-static char *rule_text(const Rule *rule, int index) {
+static double rule_value(const Rule *rule, int index) {
     const double share = rule->count > 1 ? index / (rule->count - 1.0) : 0;
-    const double value =
-        rule->is_log ? rule->low * pow(rule->high / rule->low, share) : rule->low + share * (rule->high - rule->low);
+    return rule->is_log ? rule->low * pow(rule->high / rule->low, share) : rule->low + share * (rule->high - rule->low);
+}
+
+// Of six digits, where they tell a value from the next: they are names, too.
+static char *rule_text(const Rule *rule, int index) {
+    const double value = rule_value(rule, index), next = rule_value(rule, index + 1);
+    const bool is_near = fabs(next - value) < 1e-4 * fmax(fabs(rule->low), fabs(rule->high));
     char *text;
-    return asprintf(&text, "%.12g", value) < 0 ? NULL : text;
+    return asprintf(&text, is_near ? "%.12g" : "%.6g", value) < 0 ? NULL : text;
 }
 
 ck_Status ck_values_read(const ck_Document *document, yaml_node_t *node, const char *key, char ***texts, int *count,

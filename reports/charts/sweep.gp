@@ -1,0 +1,25 @@
+# A metric against a swept key. Engine, x, y, panel, key, metric, error or value, scene. Lines of other keys' values are parted
+# by empty lines.
+unset title
+stats data using 4 skip 1 nooutput
+panels = int(STATS_max) + 1
+columns = panels < 2 ? 1 : 2
+rows = ceil(real(panels)/columns)
+set multiplot layout rows, columns title title noenhanced margins 0.09,0.98,0.16,0.9 spacing 0.11,0.15
+do for [p = 0:panels - 1] {
+	key = ''; metric = ''; of = ''; scene = ''
+	stats data using ($4 == p ? (key = strcol(5), metric = strcol(6), of = strcol(7), scene = strcol(8), $2) : NaN) skip 1 nooutput
+	unset logscale
+	set format xy '%g'
+	if (STATS_min > 0 && STATS_max > 8*STATS_min) { set logscale x }
+	if (of eq 'error') { set logscale y; set format y '10^{%L}' }
+	set xlabel key noenhanced
+	label = of eq 'error' ? metric.', distance to the truth' : metric
+	set ylabel label noenhanced
+	set title scene noenhanced
+	# one legend for all
+	if (p) { unset key } else { set key at screen 0.5, 0.01 center bottom horizontal maxrows 3 samplen 1 font ',10' }
+	plot for [engine in present] data using ($4 == p ? only(engine, $2) : NaN):3 skip 1 \
+		with linespoints linetype place(engine) title engine noenhanced
+}
+unset multiplot
