@@ -31,7 +31,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_RECORDING = 8192,
     CK_TAKES_FORMAT = 16384,
     CK_TAKES_SPRING = 32768,
-    CK_TAKES_STUDY = 65536
+    CK_TAKES_STUDY = 65536,
+    CK_TAKES_PART = 131072 // --shard, of scenes
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -70,12 +71,12 @@ typedef struct ck_Arguments {
     bool by_engine;           // results of one engine of a scene stand for themselves
     int shard, shards;
     bool runs_nothing;
-    bool appends, forces;                 // into a directory that holds other results: keeps them, replaces them
-    int rounds, largest;                  // of bench
-    double case_limit, study_timeout;     // of study: s of wall time of a case, and of all; 0: any
+    bool appends, forces;             // into a directory that holds other results: keeps them, replaces them
+    int rounds, largest;              // of bench
+    double case_limit, study_timeout; // of study: s of wall time of a case, and of all; 0: any
     bool is_part, uses_slurm, finishes, is_dry;
-    const char *partition, *slurm_time; // as sbatch takes them; NULL: not given
-    int array, array_limit, cores;      // parts, at a time, and of each
+    const char *partition, *slurm_time;   // as sbatch takes them; NULL: not given
+    int array, array_limit, cores;        // parts, at a time, and of each
     double fps, mass, stiffness, damping; // of means: frames a second, kg, N/m, N*s/m
     char question[2048];                  // what is asked, without the scene, where to and how fast; words between tabs
     double error;                         // a tolerance; NAN: none

@@ -71,7 +71,7 @@ static const Option table[] = {
      .help = "for the order in which engines are timed"},
     {"jobs", "N", 'j', CK_TAKES_JOBS, COUNT, PLACE(options.jobs), 1, 1024,
      .fallback = "one a core; one where time counts", .help = "worker processes", .is_way = true},
-    {"shard", "I/N", 0, CK_TAKES_SHARD, OTHER, .read = read_shard, .is_way = true,
+    {"shard", "I/N", 0, CK_TAKES_SHARD | CK_TAKES_PART, OTHER, .read = read_shard, .is_way = true,
      .help = "only every N-th case, from the I-th; 'clothcheck merge' joins the parts"},
     {"kept", NULL, 0, CK_TAKES_SHARD, FLAG, PLACE(runs_nothing), .is_way = true,
      .help = "run nothing: write what the journal in --out holds, or fail"},

@@ -1,6 +1,7 @@
 #include "studies.h"
 
 #include "files.h"
+#include "sweeps.h"
 #include "tables.h"
 #include "tune.h"
 
@@ -38,6 +39,9 @@ int ck_study_command(const ck_Command *command, ck_LayoutName layout, int argc, 
     ck_Arguments arguments;
     ck_Comparison comparison = {0};
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
+    // each of several is a case of a study
+    for (int i = 0; i < CK_STUDY_RUNS && !status && arguments.scene_count > 1; i++)
+        if (!strcmp(ck_study_runs[i], argv[0])) return ck_sweeps_of_scenes(&arguments, (ck_StudyRun)i);
     if (!status && arguments.scene_count != 1)
         status = ck_fail(&error, CK_BAD_INPUT, "%s takes one SCENE; %d are given", argv[0], arguments.scene_count);
     if (!status) status = ck_comparison_load(&comparison, arguments.scenes[0], &error);

@@ -275,7 +275,7 @@ static ck_Status count_points(ck_Sweep *sweep, ck_Error *error) {
 
 ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Error *error) {
     const ck_StudyFile *file = options->file;
-    *sweep = (ck_Sweep){.options = options, .is_by_engine = is_by_engine[file->run]};
+    *sweep = (ck_Sweep){.options = options, .is_by_engine = is_by_engine[file->run] && !options->is_by_point};
     sweep->engine_count = sweep->is_by_engine ? options->compare->engine_count : 1;
     ck_Status status = count_points(sweep, error);
     if (status) return status;

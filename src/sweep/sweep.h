@@ -23,6 +23,7 @@ typedef struct ck_SweepOptions {
     int shard, shards;                // only every shards-th case, from the shard-th, counted from 1; 0: all
     double case_limit;                // s of wall time of a case
     double timeout;                   // s of wall time after which no case is begun; 0: none
+    bool is_by_point;                 // all engines of a point are one case
     bool is_part;                     // others run cases, too: it does not wait for theirs
 } ck_SweepOptions;
 

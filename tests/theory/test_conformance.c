@@ -252,6 +252,8 @@ static void test_bitwise_repeat(void **state) {
 // the next term is left, and from the finest run 1/8: 2^order within 35 %. Softened springs change with the step too.
 static void test_self_consistency(void **state) {
     (void)state;
+    // long, and in memory what shorter ones do
+    if (fixture_leaves_natives()) skip();
     for (int i = 0; i < ck_engine_count(); i++) {
         const ck_Engine *engine = ck_engine_at(i);
         if (engine->method == CK_METHOD_SEED || engine->is_stock) continue;
@@ -348,6 +350,8 @@ static void test_rope(void **state) {
 // with a quarter of that step a first-order method is off by a quarter, of which half as much again is allowed.
 static void test_level_rope(void **state) {
     (void)state;
+    // long, and in memory what shorter ones do
+    if (fixture_leaves_natives()) skip();
     static const char text[] = "name: level\nrope: {particles: 20, spacing: 0.1, mass: 1, along: [1, 0, 0]}\nsprings: "
                                "{rigid: true}\npins: [first]\ngravity: [0, -9.81, 0]\n"
                                "time: {duration: 3, step: 0.016666666666666666}\n";

@@ -175,6 +175,8 @@ static void test_ball(void **state) {
 // The closed form itself: energy is kept on the ball and in the air, and it leaves at cos θ = 2/3·cos θ_0.
 static void test_sphere_truth(void **state) {
     (void)state;
+    // long, and in memory what shorter ones do
+    if (fixture_leaves_natives()) skip();
     TruthFixture fixture;
     load(&fixture, "name: ball\nnetwork: {nodes: [{at: [0.01, 0.2998332870110419, 0], mass: 0.1}], bars: []}\n" PULL
                    "colliders: [{sphere: {center: [0, 0, 0], radius: 0.3}}]\n"
@@ -220,6 +222,8 @@ static void test_tunnelling(void **state) {
 // others v·dt = 2 m/s/240 at the most, which is 0.17 of the spacing; at the end all 1 % of it.
 static void test_cloth_on_floor(void **state) {
     (void)state;
+    // long, and in memory what shorter ones do
+    if (fixture_leaves_natives()) skip();
     TruthFixture fixture;
     load(&fixture,
          "name: floor\ncloth: {rows: 5, columns: 5, spacing: 0.05, mass: 0.025, origin: [0, 0.2, 0], down: [0, 0, 1]}\n"

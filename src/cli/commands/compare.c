@@ -29,11 +29,29 @@ static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
     ck_answer_gap(answer);
 }
 
+// Only every shards-th scene, from the shard-th.
+static ck_Status take_part(ck_Arguments *arguments, ck_Error *error) {
+    int count = 0;
+    if (arguments->shards <= 1) return CK_OK;
+    for (int i = 0; i < arguments->scene_count; i++) {
+        if (i % arguments->shards == arguments->shard - 1)
+            arguments->scenes[count++] = arguments->scenes[i];
+        else
+            free(arguments->scenes[i]);
+    }
+    if (!count)
+        ck_fail(error, CK_BAD_INPUT, "--shard %d/%d: there are only %d scenes", arguments->shard, arguments->shards,
+                arguments->scene_count);
+    arguments->scene_count = count;
+    return count ? CK_OK : CK_BAD_INPUT;
+}
+
 static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     ck_Arguments arguments;
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     if (!status) status = ck_arguments_all_scenes(&arguments, &error);
+    if (!status) status = take_part(&arguments, &error);
     if (!status) status = ck_command_compare_scenes(&arguments, show, &error);
     if (!status) {
         ck_answer_line(&arguments.answer, CK_ANSWER_NOTE,
@@ -43,7 +61,10 @@ static int run(const ck_Command *command, int argc, char **argv) {
     }
     if (!status) {
         ck_answer_line(&arguments.answer, CK_ANSWER_FILES, "%s", arguments.out);
-        ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments.out);
+        if (arguments.shards > 1)
+            ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck merge OUT %s ...", arguments.out);
+        else
+            ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments.out);
     }
     return ck_command_end(&arguments, status, &error);
 }
@@ -56,7 +77,7 @@ const ck_Command ck_command_compare = {
             "deviations.csv,\nledger.csv, series.csv and machine.csv into --out. Results there that this "
             "comparison would not\nreplace stop it: --append keeps those of other scenes, --force replaces all.",
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS |
-              CK_TAKES_KEEPING,
+              CK_TAKES_KEEPING | CK_TAKES_PART,
     .out = "out",
     .seconds = 900,
     .patience = 10,

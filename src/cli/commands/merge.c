@@ -1,14 +1,17 @@
 #include "command.h"
 #include "files.h"
+#include "join.h"
 #include "needs.h"
 #include "precision.h"
 #include "refine.h"
 #include "stability_study.h"
+#include "sweep.h"
 
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define MAX_WORDS 128
 
@@ -90,6 +93,30 @@ static ck_Status check_parts(const ck_Arguments *arguments, ck_Error *error) {
     return CK_OK;
 }
 
+// Parts that are no journal of a study of one scene: cases of a study of many, or a comparison's CSVs.
+static int join(ck_Arguments *arguments, bool is_study) {
+    ck_Error error = {0};
+    char **parts = arguments->words + 1, *out = arguments->words[0];
+    const int count = arguments->word_count - 1;
+    ck_Status status = is_study ? ck_sweep_merge(out, parts, count, &error) : ck_join(out, parts, count, &error);
+    if (!status && is_study) {
+        ck_answer_line(&arguments->answer, CK_ANSWER_SAYS, "%s: has the cases of all parts", out);
+        ck_answer_line(&arguments->answer, CK_ANSWER_NEXT,
+                       "the command of the parts, with --out %s --kept in place of --shard", out);
+    } else if (!status) {
+        ck_answer_line(&arguments->answer, CK_ANSWER_FILES, "%s", out);
+        ck_answer_line(&arguments->answer, CK_ANSWER_NEXT, "clothcheck report %s", out);
+    }
+    return ck_command_end(arguments, status, &error);
+}
+
+static bool has_cases(const char *part) {
+    char *folder = ck_sweep_folder(part);
+    const bool has = folder && !access(folder, F_OK);
+    free(folder);
+    return has;
+}
+
 static int run(const ck_Command *command, int argc, char **argv) {
     ck_Arguments arguments;
     ck_Error error = {0};
@@ -100,8 +127,10 @@ static int run(const ck_Command *command, int argc, char **argv) {
     int count = arguments.word_count - 1;
     if (!status) status = check_parts(&arguments, &error);
     if (!status) {
+        if (has_cases(parts[0])) return join(&arguments, true);
         study = find_study(parts[0], question, sizeof question);
-        if (!study) status = ck_fail(&error, CK_BAD_INPUT, "%s: holds no part of a study (NAME.journal)", parts[0]);
+        if (!study && ck_join_is_part(parts[0])) return join(&arguments, false);
+        if (!study) status = ck_fail(&error, CK_BAD_INPUT, "%s: holds no part of a study or of a comparison", parts[0]);
     }
     if (!status)
         status = ck_study_merge(arguments.words[0], study->command->name, study->name_at, (const char *const *)parts,
@@ -117,8 +146,9 @@ static int run(const ck_Command *command, int argc, char **argv) {
 const ck_Command ck_command_merge = {
     .name = "merge",
     .arguments = "OUT DIR...",
-    .about = "joins the parts of a study that was run with --shard",
-    .help = "Joins the parts of a study that were run with --shard into DIR..., and writes into OUT what one run would "
+    .about = "joins the parts of a study or a comparison that was run with --shard",
+    .help = "Joins the parts of a study or a comparison that were run with --shard into DIR..., and writes into OUT "
+            "what one run would "
             "have\nwritten. Parts are of one study when they were asked the same of the same scene text, wherever its "
             "file was.",
     .run = run,

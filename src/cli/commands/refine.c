@@ -106,7 +106,7 @@ static int refine(const ck_Command *command, int argc, char **argv) {
 
 const ck_Command ck_command_refine = {
     .name = "refine",
-    .arguments = "SCENE",
+    .arguments = "SCENE...",
     .about = "the same material at n, 2n and 4n: what converges, and to what: refine.csv",
     .help =
         "Runs every engine, and solves the truth, on a cloth or rope of one, two and four times as many segments a "

@@ -38,7 +38,7 @@ static int precision(const ck_Command *command, int argc, char **argv) {
 
 const ck_Command ck_command_precision = {
     .name = "precision",
-    .arguments = "SCENE",
+    .arguments = "SCENE...",
     .about = "error against cost over time steps and iterations: precision.csv",
     .help = "Runs every engine over time steps from an eighth to sixteen times as many substeps as its rule takes, and "
             "over\niterations; writes precision.csv with error, cost and the Pareto front, and precision_summary.csv "
@@ -77,7 +77,7 @@ static int stability(const ck_Command *command, int argc, char **argv) {
 
 const ck_Command ck_command_stability = {
     .name = "stability",
-    .arguments = "SCENE",
+    .arguments = "SCENE...",
     .about = "where methods fail: time step against stiffness: stability.csv",
     .help = "Pushes the scene's rest and steps it: a map over time steps, stiffnesses and iterations, and the critical "
             "step by\nbisection to 1 % beside what theory says; writes stability.csv.",
@@ -124,7 +124,7 @@ static int needs(const ck_Command *command, int argc, char **argv) {
 
 const ck_Command ck_command_needs = {
     .name = "needs",
-    .arguments = "SCENE",
+    .arguments = "SCENE...",
     .about = "what the scene needs to be modelled, and what not: needs.csv",
     .help = "Leaves out one modelled term at a time, and every second particle, and says which of them change any "
             "metric by\nmore than --error (default 0.01), and what each costs; writes needs.csv. The engine is the "

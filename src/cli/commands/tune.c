@@ -216,7 +216,7 @@ static int run_command(const ck_Command *command, int argc, char **argv) {
 
 const ck_Command ck_command_tune = {
     .name = "tune",
-    .arguments = "SCENE",
+    .arguments = "SCENE...",
     .about = "the cheapest settings within an error, or the closest to a goal: tune.csv",
     .help = "Searches substeps, iterations and relaxation of one --engine for the cheapest settings within --error or\n"
             "--stretch, for the least error at --max-frame-ms, or without a goal for the least error at all. The error "
