@@ -12,15 +12,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define FIVE "tests/sweep/studies/five_hundred.yaml"
-
-// The sanitizers make a process slow to start: there fewer engines do.
+// The sanitizers make processes slow to start: there fewer cases do.
 #ifdef __SANITIZE_ADDRESS__
+#define STUDY "tests/sweep/studies/few.yaml"
 #define ENGINES " -e native-verlet -e still -e ode-quick"
-#define CASES (24 + 36 * 3)
+#define LEAST_CASES (4 + 8 * 3)
 #else
+#define STUDY "tests/sweep/studies/five_hundred.yaml"
 #define ENGINES ""
-#define CASES 0 // whatever engines there are
+#define LEAST_CASES 500
 #endif
 
 static const struct {
@@ -156,11 +156,10 @@ static int count_records(const char *out, size_t *distinct) {
 static void test_whole(void **state) {
     (void)state;
     size_t distinct;
-    run_study(FIVE, "whole", "");
+    run_study(STUDY, "whole", "");
     const int records = count_records("whole", &distinct);
     assert_int_equal((size_t)records, distinct);
-    if (CASES) assert_int_equal(records, CASES);
-    assert_true(CASES || records >= 500);
+    assert_true(records >= LEAST_CASES);
 }
 
 // Cases that are done by now, as the board's bytes say.
@@ -179,16 +178,16 @@ static void test_killed(void **state) {
     char line[600];
     size_t distinct;
     srand(24);
-    snprintf(line, sizeof line, "study " FIVE " --out %s/killed" ENGINES, fixture_directory);
+    snprintf(line, sizeof line, "study " STUDY " --out %s/killed" ENGINES, fixture_directory);
     for (int i = 0; i < 10; i++) {
-        const int until = count_done("killed") + 1 + rand() % (CASES ? CASES / 12 : 40);
+        const int until = count_done("killed") + 1 + rand() % (LEAST_CASES / 12);
         const pid_t program = fixture_start(line);
         int how;
         while (count_done("killed") < until && !waitpid(program, &how, WNOHANG)) usleep(200);
         kill(program, SIGKILL);
         waitpid(program, &how, 0);
     }
-    run_study(FIVE, "killed", "");
+    run_study(STUDY, "killed", "");
     assert_same_results("whole", "killed");
     // a case that was killed between its record and its mark may be there twice, but each is
     count_records("killed", &distinct);
@@ -203,7 +202,7 @@ static void test_shared(void **state) {
     char line[600];
     pid_t programs[4];
     size_t distinct;
-    snprintf(line, sizeof line, "study " FIVE " --out %s/shared" ENGINES, fixture_directory);
+    snprintf(line, sizeof line, "study " STUDY " --out %s/shared" ENGINES, fixture_directory);
     for (int i = 0; i < 4; i++) programs[i] = fixture_start(line);
     for (int i = 0; i < 4; i++) {
         int how;
@@ -219,12 +218,12 @@ static void test_shared(void **state) {
 static void test_parts(void **state) {
     (void)state;
     char line[900];
-    run_study(FIVE, "part1", "--shard 1/2");
-    run_study(FIVE, "part2", "--shard 2/2");
+    run_study(STUDY, "part1", "--shard 1/2");
+    run_study(STUDY, "part2", "--shard 2/2");
     const char *d = fixture_directory;
     snprintf(line, sizeof line, "merge %s/joined %s/part1 %s/part2", d, d, d);
     assert_int_equal(fixture_program(line), 0);
-    run_study(FIVE, "joined", "--kept");
+    run_study(STUDY, "joined", "--kept");
     assert_same_results("whole", "joined");
 }
 
@@ -242,7 +241,7 @@ static void test_damage(void **state) {
     assert_int_equal(system(line), 0);
     count_records("damaged", &after);
     assert_true(after < before);
-    run_study(FIVE, "damaged", "");
+    run_study(STUDY, "damaged", "");
     assert_same_results("whole", "damaged");
 }
 
@@ -323,7 +322,7 @@ static void test_report(void **state) {
     assert_non_null(chart);
     free(chart);
     char *page = fixture_read("whole/index.html");
-    assert_non_null(strstr(page, "\"scenes\":[]"));
+    if (LEAST_CASES >= 500) assert_non_null(strstr(page, "\"scenes\":[]"));
     free(page);
 }
 
@@ -334,7 +333,7 @@ static void test_folders(void **state) {
     const char *d = fixture_directory;
     snprintf(line, sizeof line, "compare pendulum -e native-verlet -r 0 --out %s/compared", d);
     assert_int_equal(fixture_program(line), 0);
-    snprintf(line, sizeof line, "study " FIVE " --out %s/compared", d);
+    snprintf(line, sizeof line, "study " STUDY " --out %s/compared", d);
     assert_int_equal(fixture_program(line), 2);
     fixture_assert_output("holds results that are of no study");
     snprintf(line, sizeof line, "compare pendulum -e native-verlet -r 0 --append --out %s/whole", d);
