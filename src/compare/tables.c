@@ -209,32 +209,37 @@ static void add_truth_series(ck_Csv *csv, const ck_Comparison *comparison) {
     }
 }
 
-void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options) {
+static void add_comparison(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options,
+                           ck_SeriesRows series) {
     for (int i = 0; i < comparison->run_count; i++) {
         add_run(&tables->csv[CK_RUNS], comparison, &comparison->runs[i], options);
         add_ledger(&tables->csv[CK_LEDGER], &comparison->runs[i]);
-        if (tables->csv[CK_SERIES].whole.file)
+        if (series != CK_SERIES_ROWS_NONE)
             add_series(&tables->csv[CK_SERIES], comparison, comparison->runs[i].engine->name,
                        &comparison->runs[i].trajectory);
         add_metrics(&tables->csv[CK_METRICS], comparison, i);
         add_distances(&tables->csv[CK_METRICS], comparison, i);
     }
-    if (tables->csv[CK_SERIES].whole.file) add_truth_series(&tables->csv[CK_SERIES], comparison);
+    if (series == CK_SERIES_ROWS_ALL) add_truth_series(&tables->csv[CK_SERIES], comparison);
     add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
 }
 
+void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options) {
+    add_comparison(tables, comparison, options, CK_SERIES_ROWS_ALL);
+}
+
 ck_Status ck_tables_text(char **rows, const ck_Comparison *comparison, const ck_CompareOptions *options,
-                         bool has_series, ck_Error *error) {
+                         ck_SeriesRows series, ck_Error *error) {
     ck_Tables tables = {0};
     size_t sizes[CK_COMPARISON_LAYOUTS];
     bool has_failed = false;
     for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
         rows[i] = NULL;
-        if (i == CK_MACHINE || (i == CK_SERIES && !has_series)) continue;
+        if (i == CK_MACHINE || (i == CK_SERIES && series == CK_SERIES_ROWS_NONE)) continue;
         ck_csv_begin(&tables.csv[i], open_memstream(&rows[i], &sizes[i]), &ck_layouts[i]);
         has_failed |= !tables.csv[i].whole.file;
     }
-    if (!has_failed) ck_tables_add(&tables, comparison, options);
+    if (!has_failed) add_comparison(&tables, comparison, options, series);
     for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
         FILE *file = tables.csv[i].whole.file;
         if (file) has_failed |= fclose(file) != 0;

@@ -29,10 +29,13 @@ ck_Status ck_tables_open(ck_Tables *tables, const char *directory, ck_Keeping ke
 // Adds the rows of one finished comparison. options are those it ran with.
 void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_CompareOptions *options);
 
+typedef enum ck_SeriesRows { CK_SERIES_ROWS_NONE, CK_SERIES_ROWS_ENGINES, CK_SERIES_ROWS_ALL } ck_SeriesRows;
+
 // The rows of a finished comparison's layouts as text, without their headers: [CK_COMPARISON_LAYOUTS], but those of
-// machine.csv, and of series.csv where it is not asked for. Errors: CK_NO_MEMORY. Free each of rows in any case.
+// machine.csv, and of series.csv those that are asked for: the truth's among them, or not. Errors: CK_NO_MEMORY. Free
+// each of rows in any case.
 ck_Status ck_tables_text(char **rows, const ck_Comparison *comparison, const ck_CompareOptions *options,
-                         bool has_series, ck_Error *error);
+                         ck_SeriesRows series, ck_Error *error);
 
 // Adds what is known of the machine, and gives the six files their names. Errors: CK_IO.
 ck_Status ck_tables_close(ck_Tables *tables, ck_Error *error);

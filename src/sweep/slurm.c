@@ -12,17 +12,17 @@
 #include <unistd.h>
 
 // A preempted part, or one out of time, is told 30 s before it ends; its cases are free from then on.
-static void write_part(FILE *out, const ck_SlurmOptions *options) {
+static void write_part(FILE *out, const ck_SlurmOptions *options, const char *folder) {
     fprintf(out, "#SBATCH --job-name=%s\n#SBATCH --array=1-%d", options->name, options->array);
     if (options->limit > 0) fprintf(out, "%%%d", options->limit);
     fprintf(out, "\n#SBATCH --cpus-per-task=%d\n#SBATCH --requeue\n#SBATCH --signal=B:TERM@30\n", options->cores);
     if (options->time) fprintf(out, "#SBATCH --time=%s\n", options->time);
-    fprintf(out, "#SBATCH --output=%s/slurm-%%A_%%a.log\n", options->folder);
+    fprintf(out, "#SBATCH --output=%s/slurm-%%A_%%a.log\n", folder);
 }
 
-static void write_end(FILE *out, const ck_SlurmOptions *options) {
+static void write_end(FILE *out, const ck_SlurmOptions *options, const char *folder) {
     fprintf(out, "#SBATCH --job-name=%s-results\n#SBATCH --cpus-per-task=1\n#SBATCH --requeue\n", options->name);
-    fprintf(out, "#SBATCH --output=%s/slurm-%%j.log\n", options->folder);
+    fprintf(out, "#SBATCH --output=%s/slurm-%%j.log\n", folder);
 }
 
 char *ck_slurm_script(const ck_SlurmOptions *options, int is_end) {
@@ -33,10 +33,12 @@ char *ck_slurm_script(const ck_SlurmOptions *options, int is_end) {
     FILE *out = open_memstream(&text, &size);
     if (!out) return NULL;
     fprintf(out, "#!/bin/sh\n");
+    // sbatch reads quotes as a shell does
+    ck_text_shell(quoted, sizeof quoted, options->folder);
     if (is_end)
-        write_end(out, options);
+        write_end(out, options, quoted);
     else
-        write_part(out, options);
+        write_part(out, options, quoted);
     if (options->partition) fprintf(out, "#SBATCH --partition=%s\n", options->partition);
     fprintf(out, "#SBATCH --open-mode=append\n");
     if (getcwd(here, sizeof here)) {

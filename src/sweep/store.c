@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define ENDING ".cases"
@@ -79,9 +80,11 @@ static bool keep(ck_Store *store, const ck_StoreEntry *entry) {
 static ck_Status read_file(ck_Store *store, int number, ck_Error *error) {
     char *path = ck_path_join(store->directory, store->files[number]), *text = NULL;
     size_t room = 0;
+    struct stat about = {0};
     FILE *file = path ? fopen(path, "re") : NULL;
     free(path);
     ck_Status status = CK_OK;
+    if (file && (fstat(fileno(file), &about) || !S_ISREG(about.st_mode))) about.st_size = 0;
     for (bool is_whole = file != NULL; is_whole && !status;) {
         ck_StoreEntry entry = {.file = (uint32_t)number};
         size_t bytes;
@@ -93,6 +96,8 @@ static ck_Status read_file(ck_Store *store, int number, ck_Error *error) {
             bytes && bytes < UINT32_MAX;
         if (!is_whole) break;
         entry.place = ftello(file);
+        // what a damaged line asks for may be any size
+        if (bytes >= (uint64_t)(about.st_size - entry.place)) break;
         entry.bytes = (uint32_t)bytes;
         if (bytes + 1 > room) {
             free(text);

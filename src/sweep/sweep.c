@@ -2,6 +2,7 @@
 
 #include "change.h"
 #include "files.h"
+#include "process.h"
 #include "tables.h"
 #include "time_scale.h"
 
@@ -258,7 +259,9 @@ static ck_Status check_points(ck_Sweep *sweep, ck_Error *error) {
         if (sweep->point_count > MOST_CHECKED || !sweep->options->file->scene_count) continue;
         ck_sweep_word(sweep, i, word);
         status = find_work(word, &sweep->work[i], error);
+        if (i % 100 == 99) ck_progress_show("looking at %d of %d points", i + 1, sweep->point_count);
     }
+    ck_progress_clear();
     return status;
 }
 

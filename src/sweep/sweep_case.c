@@ -162,7 +162,11 @@ static ck_Status add_rows(const Case *one, const ck_Comparison *comparison, cons
                           ck_Error *error) {
     char *rows[CK_COMPARISON_LAYOUTS];
     const ck_StudySeries series = one->sweep->options->file->series;
-    ck_Status status = ck_tables_text(rows, comparison, options, series != CK_SERIES_NONE, error);
+    // the truth of a point stands beside its first engine
+    const ck_SeriesRows wanted = series == CK_SERIES_NONE ? CK_SERIES_ROWS_NONE
+                                 : one->engine            ? CK_SERIES_ROWS_ENGINES
+                                                          : CK_SERIES_ROWS_ALL;
+    ck_Status status = ck_tables_text(rows, comparison, options, wanted, error);
     if (!status && series == CK_SERIES_GZIP) status = write_series(one, rows[CK_SERIES], error);
     for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
         if (!status && rows[i] && (i != CK_SERIES || series == CK_SERIES_CSV))
@@ -225,15 +229,15 @@ static const ck_LayoutName written[CK_STUDY_RUNS][3] = {
 typedef struct Line {
     ck_SweepCommand *command;
     char *words[MOST_WORDS];
-    int count;
+    int count, most_result; // exit statuses up to that are fine
 } Line;
 
 static void run_line(void *context) {
     Line *line = context;
     const int result = line->command(line->count, line->words);
     fflush(NULL);
-    // 1: a check failed, which the CSV says
-    if (result > 1) _exit(result);
+    // where a check failed the CSV says so
+    if (result > line->most_result) _exit(result);
 }
 
 // A command line of the case, but for where to.
@@ -242,7 +246,7 @@ static bool make_line(Line *line, Case *one) {
     const ck_StudyFile *file = options->file;
     size_t used;
     if (2 * options->compare->engine_count + file->option_count + 12 > MOST_WORDS) return false;
-    *line = (Line){.command = options->command};
+    *line = (Line){.command = options->command, .most_result = file->run == CK_STUDY_CONFORM};
     line->words[line->count++] = (char *)ck_study_runs[file->run];
     for (int i = 0; i < file->option_count; i++) line->words[line->count++] = file->options[i];
     for (int i = 0; i < options->compare->engine_count; i++) {

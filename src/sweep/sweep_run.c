@@ -19,7 +19,6 @@
 // What the workers of a process share.
 typedef struct Shared {
     ck_Costs costs;
-    atomic_int ended; // cases that they ran
     ck_Status status; // of the first that failed
     ck_Error error;
 } Shared;
@@ -29,6 +28,7 @@ typedef struct Run {
     char *folder;
     Shared *shared;
     double start, deadline; // of ck_wall
+    pid_t parent;
     pid_t *workers;
 } Run;
 
@@ -45,7 +45,6 @@ static ck_Status run_one(const Run *run, const ck_StoreWriter *writer, const ck_
     if (status) return status;
     int engine, point = ck_sweep_point(run->sweep, index, &engine);
     ck_costs_learn(&run->shared->costs, run->sweep, point, engine, cost);
-    atomic_fetch_add(&run->shared->ended, 1);
     return CK_OK;
 }
 
@@ -78,6 +77,7 @@ static _Noreturn void work(const Run *run) {
     ck_StoreWriter writer = {.file = -1};
     ck_Queue queue = {0};
     prctl(PR_SET_PDEATHSIG, SIGKILL); // no worker goes on without its study
+    if (getppid() != run->parent) _exit(0);
     ck_Status status = ck_board_open(&board, run->folder, run->sweep->study, &error);
     if (!status) status = ck_store_writer_open(&writer, run->folder, &error);
     if (!status) status = ck_queue_create(&queue, run->sweep, &board, &run->shared->costs, &error);
@@ -200,6 +200,7 @@ ck_Status ck_sweep_run(const ck_Sweep *sweep, ck_SweepProgress *progress, ck_Err
                .folder = ck_sweep_folder(options->directory),
                .shared = ck_shared_allocate(sizeof(Shared)),
                .start = ck_wall(),
+               .parent = getpid(),
                .deadline = options->timeout > 0 ? ck_wall() + options->timeout : INFINITY};
     ck_Board board = {.file = -1};
     int missing = 0;

@@ -32,7 +32,7 @@ static void test_usage(void **state) {
         {"fly", 2, "there is no command fly; known are demo, list"},
         {"tun", 2, "there is no command tun; did you mean tune?"},
         {"help", 0, "clothcheck compare"},
-        {"help tune", 0, "clothcheck tune SCENE [options]"},
+        {"help tune", 0, "clothcheck tune SCENE... [options]"},
         {"help fly", 2, "there is no command fly"},
         {"run -h", 0, "--engine NAME"},
         {"precision --help", 0, "cut and scored as far as it came; 0: any (default: 3)"},

@@ -12,6 +12,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#define SOURCES SCENE_DIRECTORY "/.."
+#define STUDIES SOURCES "/tests/sweep/studies"
+
 // The sanitizers make processes slow to start: there fewer cases do.
 #ifdef __SANITIZE_ADDRESS__
 #define STUDY "tests/sweep/studies/few.yaml"
@@ -246,13 +249,12 @@ static void test_damage(void **state) {
 }
 
 #define SMALL                                                                                                          \
-    "study: small\nscenes: [%s/tests/sweep/studies/chain.yaml]\nengines: [native-verlet, still]\nseries: %s\n"         \
+    "study: small\nscenes: [" STUDIES "/chain.yaml]\nengines: [native-verlet, still]\nseries: %s\n"                    \
     "repeats: 0\nsweep:\n  - springs.stiffness: [%s]\n"
 
 static void run_small(const char *series, const char *values, const char *out) {
-    char here[2000], text[3000], line[3000];
-    assert_non_null(getcwd(here, sizeof here));
-    snprintf(text, sizeof text, SMALL, here, series, values);
+    char text[3000], line[3000];
+    snprintf(text, sizeof text, SMALL, series, values);
     char *path = fixture_file(text);
     snprintf(line, sizeof line, "study %s --out %s/%s", path, fixture_directory, out);
     if (fixture_program(line)) fail_msg("%s fails: %s", line, fixture_read("output"));
@@ -297,7 +299,7 @@ static void test_shipped_study(void **state) {
     char *text = NULL;
     size_t size;
     int lines = 0;
-    assert_int_equal(ck_file_read(&text, &size, "reports/studies/sag_by_resolution.yaml", NULL), CK_OK);
+    assert_int_equal(ck_file_read(&text, &size, SOURCES "/reports/studies/sag_by_resolution.yaml", NULL), CK_OK);
     for (const char *letter = text; *letter; letter++) lines += *letter == '\n';
     assert_true(lines <= 25);
     free(text);
@@ -326,6 +328,89 @@ static void test_report(void **state) {
     free(page);
 }
 
+static int count_cheapest(void) {
+    char line[400], number[20] = "";
+    snprintf(line, sizeof line, "report %s/hosts", fixture_directory);
+    assert_int_equal(fixture_program(line), 0);
+    // is_cheapest is the eleventh column
+    snprintf(line, sizeof line, "tail -n +2 %s/hosts/charts/summary.csv | cut -d, -f11 | grep -c 1", fixture_directory);
+    FILE *pipe = popen(line, "r");
+    assert_non_null(fgets(number, sizeof number, pipe));
+    pclose(pipe);
+    return atoi(number);
+}
+
+// Of two engines on one machine one is the cheapest; on unlike ones there is no telling.
+static void test_unlike_machines(void **state) {
+    (void)state;
+    char line[3000];
+    char *path =
+        fixture_file("study: hosts\nscenes: [" STUDIES "/sheet.yaml]\nengines: [native-verlet, native-narrow]\n");
+    snprintf(line, sizeof line, "study %s --out %s/hosts", path, fixture_directory);
+    assert_int_equal(fixture_program(line), 0);
+    unlink(path);
+    free(path);
+    assert_int_equal(count_cheapest(), 1);
+    snprintf(line, sizeof line,
+             "cd %s/hosts && sed -i '/native-narrow/s/,[^,]*,\\([^,]*\\)$/,other,\\1/' runs.csv && "
+             "sed -i '2,$!b;/native-narrow/s/,[A-Za-z0-9_]*,[^,]*,\\(\"clothcheck\\)/,other,Z80,\\1/' study.csv && "
+             "grep -q ',other,' runs.csv && grep -q ',other,Z80,' study.csv",
+             fixture_directory);
+    assert_int_equal(system(line), 0);
+    assert_int_equal(count_cheapest(), 2);
+}
+
+// The scripts of an array, as they would be submitted.
+static void test_scripts(void **state) {
+    (void)state;
+    char line[400];
+    snprintf(line, sizeof line,
+             "study " STUDY " --out '%s/a b' --slurm --dry-run --array 5 --array-limit 2 --partition short --cores 3 "
+             "--slurm-time 1:00",
+             fixture_directory);
+    assert_int_equal(fixture_program(line), 0);
+    fixture_assert_output("#SBATCH --array=1-5%2\n");
+    fixture_assert_output("#SBATCH --partition=short\n");
+    fixture_assert_output("#SBATCH --cpus-per-task=3\n");
+    fixture_assert_output("#SBATCH --time=1:00\n");
+    fixture_assert_output("--part --jobs 3\n");
+    fixture_assert_output("--finish --array 5 --cores 3 --array-limit 2 --partition short --slurm-time 1:00\n");
+    snprintf(line, sizeof line, "--out '%s/a b' --time-limit", fixture_directory);
+    fixture_assert_output(line);
+    snprintf(line, sizeof line, "#SBATCH --output='%s/a b/study'/slurm-", fixture_directory);
+    fixture_assert_output(line);
+}
+
+// Several scenes of a command that takes one, and a comparison in parts.
+static void test_several_scenes(void **state) {
+    (void)state;
+    char line[900];
+    const char *d = fixture_directory;
+    snprintf(line, sizeof line, "tune rope_hanging bounce -e native-verlet --error 0.5 --out %s/tuned", d);
+    if (fixture_program(line)) fail_msg("%s", fixture_read("output"));
+    char *tuned = fixture_read("tuned/tune.csv");
+    assert_true(strstr(tuned, "\nrope_hanging,native-verlet") && strstr(tuned, "\nbounce,native-verlet"));
+    free(tuned);
+#define THREE "scenes/pendulum.yaml scenes/bounce.yaml scenes/free_fall.yaml -e native-verlet -r 0 --out"
+    snprintf(line, sizeof line, "compare " THREE " %s/three", d);
+    assert_int_equal(fixture_program(line), 0);
+    for (int i = 1; i <= 2; i++) {
+        snprintf(line, sizeof line, "compare " THREE " %s/three%d --shard %d/2", d, i, i);
+        assert_int_equal(fixture_program(line), 0);
+    }
+    snprintf(line, sizeof line, "merge %s/threes %s/three1 %s/three2", d, d, d);
+    assert_int_equal(fixture_program(line), 0);
+    snprintf(
+        line, sizeof line,
+        "cd %s && for file in metrics deviations ledger series; do cmp three/$file.csv threes/$file.csv || exit 1; "
+        "done; diff -q three/replays/bounce.replay threes/replays/bounce.replay",
+        d);
+    assert_int_equal(system(line), 0);
+    snprintf(line, sizeof line, "merge %s/again %s/three1 %s/three1", d, d, d);
+    assert_int_equal(fixture_program(line), 2);
+    fixture_assert_output("both have pendulum");
+}
+
 // Results of other commands are not lost, nor those of a study to other commands.
 static void test_folders(void **state) {
     (void)state;
@@ -348,8 +433,8 @@ static void test_slurm(void **state) {
 #ifdef __SANITIZE_ADDRESS__
     skip();
 #endif
-    snprintf(line, sizeof line, "tests/sweep/slurm " PROGRAM " %s/slurm > %s/slurm.log 2>&1", fixture_directory,
-             fixture_directory);
+    snprintf(line, sizeof line, SOURCES "/tests/sweep/slurm " PROGRAM " %s/slurm > %s/slurm.log 2>&1",
+             fixture_directory, fixture_directory);
     const int how = system(line);
     char *said = fixture_read("slurm.log");
     if (how && WIFEXITED(how) && WEXITSTATUS(how) == 77) {
@@ -364,11 +449,14 @@ static void test_slurm(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_studies),   cmocka_unit_test(test_values),      cmocka_unit_test(test_whole),
-        cmocka_unit_test(test_killed),        cmocka_unit_test(test_shared),      cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_damage),        cmocka_unit_test(test_more_values), cmocka_unit_test(test_series),
-        cmocka_unit_test(test_shipped_study), cmocka_unit_test(test_report),      cmocka_unit_test(test_folders),
-        cmocka_unit_test(test_slurm),
+        cmocka_unit_test(test_bad_studies),     cmocka_unit_test(test_values),
+        cmocka_unit_test(test_whole),           cmocka_unit_test(test_killed),
+        cmocka_unit_test(test_shared),          cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_damage),          cmocka_unit_test(test_more_values),
+        cmocka_unit_test(test_series),          cmocka_unit_test(test_shipped_study),
+        cmocka_unit_test(test_report),          cmocka_unit_test(test_folders),
+        cmocka_unit_test(test_unlike_machines), cmocka_unit_test(test_scripts),
+        cmocka_unit_test(test_several_scenes),  cmocka_unit_test(test_slurm),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

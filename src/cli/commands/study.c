@@ -102,6 +102,13 @@ static size_t write_words(char *line, size_t size, const Study *study) {
     return used < size ? used : size - 1;
 }
 
+// Adds an option and its word, quoted; nothing without one. Returns how long the line is.
+static size_t add_word(char *line, size_t size, size_t used, const char *option, const char *word) {
+    if (!word || used >= size) return used;
+    used += (size_t)snprintf(line + used, size - used, " %s ", option);
+    return used < size ? used + ck_text_shell(line + used, size - used, word) : size - 1;
+}
+
 // The scripts, and their jobs.
 static ck_Status use_slurm(Study *study, ck_Error *error) {
     ck_Arguments *arguments = &study->arguments;
@@ -113,9 +120,8 @@ static ck_Status use_slurm(Study *study, ck_Error *error) {
                              arguments->cores);
     if (arguments->array_limit)
         used += (size_t)snprintf(end + used, sizeof end - used, " --array-limit %d", arguments->array_limit);
-    if (arguments->partition)
-        used += (size_t)snprintf(end + used, sizeof end - used, " --partition %s", arguments->partition);
-    if (arguments->slurm_time) snprintf(end + used, sizeof end - used, " --slurm-time %s", arguments->slurm_time);
+    used = add_word(end, sizeof end, used, "--partition", arguments->partition);
+    add_word(end, sizeof end, used, "--slurm-time", arguments->slurm_time);
     const ck_SlurmOptions options = {.name = study->sweeps.file.name,
                                      .folder = folder,
                                      .partition = arguments->partition,
