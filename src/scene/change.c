@@ -1,5 +1,6 @@
 #include "change.h"
 
+#include "files.h"
 #include "names.h"
 
 #include <stdio.h>
@@ -35,13 +36,11 @@ bool ck_change_next(const char *word, int *place, ck_Change *change) {
     return true;
 }
 
-// The byte of a text at a mark, which counts characters.
+// The byte of a text at a mark, which counts characters from after the mark of byte order.
 static size_t byte_at(const ck_Document *document, yaml_mark_t mark) {
     const unsigned char *text = document->text;
-    size_t at = 0;
-    for (size_t line = 0; line < mark.line && at < document->length; at++) line += text[at] == '\n';
-    if (!mark.line && document->length > 2 && text[0] == 0xef && text[1] == 0xbb && text[2] == 0xbf) at = 3;
-    for (size_t column = 0; column < mark.column && at < document->length; column++) {
+    size_t at = ck_text_mark((const char *)text, document->length);
+    for (size_t left = mark.index; left && at < document->length; left--) {
         at++;
         while (at < document->length && (text[at] & 0xc0) == 0x80) at++;
     }
@@ -107,7 +106,10 @@ ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Err
     bool fits = value != NULL;
     ck_Status status = CK_OK;
     const yaml_node_t *node = deepest(document, key, &rest);
-    if (!change->value_length)
+    if (document->length > 1 && (document->text[0] == 0xff || document->text[0] == 0xfe))
+        status =
+            ck_fail(error, CK_BAD_INPUT, "%s: is in UTF-16; a scene with changes must be in UTF-8", document->path);
+    else if (!change->value_length)
         status = ck_fail(error, CK_BAD_INPUT, "%s: %s has no value; it must read @KEY=VALUE", document->path, key);
     else if (!*rest)
         fits = fits && splice(document, byte_at(document, node->start_mark), byte_at(document, node->end_mark), value);

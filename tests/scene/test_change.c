@@ -55,6 +55,26 @@ static void test_values(void **state) {
     ck_scene_free(&scene);
 }
 
+// Lines that end in other ways, and a mark of byte order.
+static void test_breaks(void **state) {
+    (void)state;
+    static const char *const breaks[] = {"\n", "\r\n", "\r", "\xc2\x85", "\xe2\x80\xa8"};
+    for (size_t i = 0; i < sizeof breaks / sizeof *breaks; i++) {
+        char text[400];
+        ck_Scene scene;
+        ck_Error error = {0};
+        const char *b = breaks[i];
+        snprintf(text, sizeof text,
+                 "\xef\xbb\xbf# \xc3\xa9%sname: r%srope: {particles: 5, spacing: 0.1, mass: 1}%sdrag: 3%s"
+                 "time: {duration: 1, fps: 60}%s",
+                 b, b, b, b, b);
+        if (load(&scene, text, "@drag=12.5@rope.mass=2", &error)) fail_msg("%s", error.message);
+        assert_near("drag", scene.file->drag, 12.5, 0);
+        assert_near("mass", scene.file->rope->mass, 2, 0);
+        ck_scene_free(&scene);
+    }
+}
+
 static void test_names(void **state) {
     (void)state;
     static const struct {
@@ -119,7 +139,8 @@ static void test_resolution(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_names),
-                                       cmocka_unit_test(test_errors), cmocka_unit_test(test_resolution)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_breaks),
+                                       cmocka_unit_test(test_names), cmocka_unit_test(test_errors),
+                                       cmocka_unit_test(test_resolution)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
