@@ -1,7 +1,19 @@
 // Puts the page together.
 
+// The hosts of a study, each with its processor; null where all ran on one.
+function hostsOf(machine) {
+	const rows = machine ? machine.rows.filter((row) => row.key.endsWith(": processor")) : [];
+	return rows.length ? rows.map((row) => `${row.key.slice(0, -": processor".length)} (${row.value})`).join(", ") : null;
+}
+
 async function startMachine() {
 	const machine = await table("machine.csv");
+	const hosts = hostsOf(machine);
+	if (hosts) {
+		document.getElementById("machine").textContent =
+			`clothcheck ${report.version} on ${hosts}: costs are only compared within one kind of processor`;
+		return;
+	}
 	const value = (key) => machine.rows.find((row) => row.key === key)?.value || "?";
 	document.getElementById("machine").textContent = machine
 		? `clothcheck ${value("clothcheck")} on ${value("processor")}, ${value("cores")} cores, ${value("system")}, ${value("compiler")}, ${value("date")}`

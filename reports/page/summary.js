@@ -17,7 +17,7 @@ function isPart(row) {
 function summaryCell(row) {
 	if (!row) return element("td");
 	const kind = Number(row.class);
-	const made = element("td", { className: "class-" + kind, title: `${row.engine} on ${row.scene}: ${classWords[kind]}` });
+	const made = element("td", { className: "class-" + kind, title: `${row.engine} on ${row.scene}: ${classWords[kind]}${row.machine ? `; timed on ${row.machine}` : ""}` });
 	made.dataset.engine = row.engine;
 	made.dataset.error = row.error;
 	made.dataset.cost = row.cpu_ms_per_s;

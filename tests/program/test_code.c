@@ -112,6 +112,13 @@ static void test_score(void **state) {
         free(runs);
         free(replay);
     }
+    char *said = fixture_read("output");
+    assert_null(strstr(said, "a pin, is"));
+    free(said);
+    // a recording whose pin stays where another scene drives it
+    snprintf(line, sizeof line, "score rope_pulled --path %s/path.csv -r 0", fixture_directory);
+    assert_int_equal(fixture_program(line), 0);
+    fixture_assert_output("particle 0, a pin, is 1 m from where the scene has it at t = 0.2 s");
     snprintf(line, sizeof line, "report %s/joined", fixture_directory);
     assert_int_equal(fixture_program(line), 0);
     assert_int_equal(fixture_program("score rope_hanging --path tests/README.md"), 2);

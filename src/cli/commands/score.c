@@ -1,9 +1,48 @@
 #include "command.h"
 #include "outside.h"
+#include "path.h"
+#include "vector.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+// Farther than that, in sizes, a pin is not where the scene has it: recordings are in single precision, or rounded.
+#define PIN_SLACK 1e-4
+
+// Where the scene has a particle that it holds or moves; false for one that is free by then.
+static bool find_pin(const ck_Model *model, int particle, double time, double *place) {
+    const ck_Driven *driven = ck_driven_find(model, particle, time);
+    if (driven) ck_driven_at(driven, time, place);
+    if (driven) return true;
+    memcpy(place, model->position + 3 * particle, 3 * sizeof(double));
+    for (int i = 0; i < model->driven_count; i++)
+        if (model->driven[i].particle == particle) return false;
+    return model->pinned[particle] && time < ck_model_release_time(model, particle);
+}
+
+// A recording whose pins are elsewhere is of another scene.
+static void show_pins(ck_Answer *answer, const ck_Run *run) {
+    const ck_Model *model = run->model;
+    double most = 0, when = 0;
+    int farthest = -1;
+    for (int frame = 0; frame < run->trajectory.frame_count; frame++)
+        for (int i = 0; i < model->particle_count; i++) {
+            double place[3];
+            const double time = frame * model->step;
+            if (!find_pin(model, i, time, place)) continue;
+            const double off = ck_distance(place, ck_trajectory_position(&run->trajectory, frame) + 3 * i);
+            if (!(off > most)) continue;
+            most = off;
+            when = time;
+            farthest = i;
+        }
+    if (farthest >= 0 && most > PIN_SLACK * model->size)
+        ck_answer_line(answer, CK_ANSWER_NOTE,
+                       "%s: particle %d, a pin, is %.3g m from where the scene has it at t = %.3g s: that is another "
+                       "scene, and its errors are of that, too",
+                       run->engine->name, farthest, most, when);
+}
 
 static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
     ck_Answer *answer = &arguments->answer;
@@ -12,6 +51,8 @@ static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
         if (comparison->runs[i].engine->outside && comparison->runs[i].remark)
             ck_answer_line(answer, CK_ANSWER_NOTE, "%s: %s", comparison->runs[i].engine->name,
                            comparison->runs[i].remark);
+    for (int i = 0; i < comparison->run_count; i++)
+        if (comparison->runs[i].engine->outside) show_pins(answer, &comparison->runs[i]);
     ck_answer_cheapest(arguments, comparison);
 }
 

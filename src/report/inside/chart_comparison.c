@@ -56,10 +56,32 @@ static double still_error(const ck_ReportData *data, const char *scene) {
     return NAN;
 }
 
+static int count_timed(const ck_ReportData *data, const char *scene, const char *machine) {
+    int count = 0;
+    for (int i = 0; i < data->summary_count; i++)
+        count += !strcmp(data->summary[i].scene, scene) && !strcmp(data->summary[i].machine, machine) &&
+                 data->summary[i].cost > 0;
+    return count;
+}
+
+// The machine that timed most engines on a scene: costs of another have no place beside its own.
+static const char *machine_of(const ck_ReportData *data, const char *scene) {
+    const char *machine = "";
+    for (int i = 0, most = 0; i < data->summary_count; i++) {
+        if (strcmp(data->summary[i].scene, scene)) continue;
+        const int count = count_timed(data, scene, data->summary[i].machine);
+        if (count > most) machine = data->summary[i].machine;
+        if (count > most) most = count;
+    }
+    return machine;
+}
+
 int ck_chart_select_cost(const ck_ReportData *data, const char *scene, FILE *out) {
     int rows = 0;
+    const char *machine = machine_of(data, scene);
     for (int i = 0; i < data->summary_count; i++) {
         const ck_Summary *one = &data->summary[i];
+        if (strcmp(one->machine, machine)) continue;
         if (strcmp(one->scene, scene) || !is_shown(one->engine) || !isfinite(one->error) || !(one->cost > 0)) continue;
         fprintf(out, "%s,%.9g,%.9g,%.9g,%d,%s,%s,%.9g\n", one->engine, 1e3 * one->cost, on_axis(one->error),
                 one->uncertainty, one->on_front, one->metric, one->status, still_error(data, scene));
