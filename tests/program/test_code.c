@@ -116,7 +116,7 @@ static void test_score(void **state) {
     assert_null(strstr(said, "a pin, is"));
     free(said);
     // a recording whose pin stays where another scene drives it
-    run_there("head -n 601 path.csv > half.csv");
+    run_there("head -n 741 path.csv > half.csv");
     snprintf(line, sizeof line, "score rope_pulled --path %s/half.csv -r 0", fixture_directory);
     assert_int_equal(fixture_program(line), 0);
     fixture_assert_output("particle 0, a pin, is 1 m from where the scene has it at t = 0.2 s");
