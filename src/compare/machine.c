@@ -5,9 +5,10 @@
 #include "loops.h"
 #include "names.h"
 
-#include <ctype.h>
+#include <csv.h>
 #include <stdlib.h>
 #include <string.h>
+#include <suitesparse/cholmod.h>
 #include <sys/utsname.h>
 #include <time.h>
 #include <unistd.h>
@@ -72,6 +73,9 @@ void ck_machine_tell(ck_MachineFact tell, void *context) {
     tell(context, "vectors", ck_loops_at(0)->vectors);
     tell_library(tell, context, "Bullet", CK_BULLET_FILES, CK_BULLET_REGISTERS);
     tell_library(tell, context, "ODE", CK_ODE_FILES, CK_ODE_REGISTERS);
+    snprintf(text, sizeof text, "CHOLMOD %d.%d.%d, libcsv %d.%d.%d, %s", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION,
+             CHOLMOD_SUBSUB_VERSION, CSV_MAJOR, CSV_MINOR, CSV_RELEASE, CK_OTHER_LIBRARIES);
+    tell(context, "libraries", text);
     tell(context, "clothcheck", CK_VERSION);
     tell(context, "commit", ck_commit);
     for (int i = 0; i < ck_engine_count(); i++) {
