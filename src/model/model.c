@@ -106,6 +106,24 @@ static ck_Status set_start(ck_Model *model, const ck_Scene *scene, ck_Error *err
     return CK_OK;
 }
 
+// Adds what a pin's name stands for.
+static ck_Status release_pins(ck_Model *model, ck_Release *release, const int *chosen, int count, const char *pin,
+                              const ck_Scene *scene, const char *path, ck_Error *error) {
+    int *grown = realloc(release->particles, sizeof *grown * (size_t)(release->particle_count + count + 1));
+    if (!grown) return CK_NO_MEMORY;
+    release->particles = grown;
+    for (int j = 0; j < count; j++) {
+        if (!model->pinned[chosen[j]])
+            return ck_scene_fail(scene, path, error, "%s is not pinned, so that it cannot be released; add it to pins",
+                                 pin);
+        if (model->released[chosen[j]])
+            return ck_scene_fail(scene, path, error, "%s is already let go; name it once", pin);
+        model->released[chosen[j]] = true;
+        grown[release->particle_count++] = chosen[j];
+    }
+    return CK_OK;
+}
+
 static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t index, ck_Error *error) {
     const ck_SceneRelease *from = &scene->file->release[index];
     ck_Release *release = &model->releases[model->release_count++];
@@ -116,26 +134,17 @@ static ck_Status set_release(ck_Model *model, const ck_Scene *scene, uint32_t in
     }
     release->at = from->at;
     release->frame = (int)fmin(ceil(from->at / model->step * (1 - 1e-12)), model->frame_count);
-    release->particles = malloc(sizeof *release->particles * (size_t)model->particle_count * from->pins_count);
-    if (!release->particles) return CK_NO_MEMORY;
-    for (uint32_t i = 0; i < from->pins_count; i++) {
+    int *chosen = malloc(sizeof *chosen * (size_t)model->particle_count);
+    ck_Status status = chosen ? CK_OK : CK_NO_MEMORY;
+    for (uint32_t i = 0; i < from->pins_count && !status; i++) {
         char path[48];
         snprintf(path, sizeof path, "release[%u].pins[%u]", index, i);
-        int count = 0, *chosen = release->particles + release->particle_count;
-        ck_Status status = ck_model_resolve_pin(chosen, &count, model, scene, from->pins[i], path, error);
-        if (status) return status;
-        for (int j = 0; j < count; j++)
-            if (!model->pinned[chosen[j]])
-                return ck_scene_fail(scene, path, error,
-                                     "%s is not pinned, so that it cannot be released; add it to pins", from->pins[i]);
-        for (int j = 0; j < count; j++) {
-            if (model->released[chosen[j]])
-                return ck_scene_fail(scene, path, error, "%s is already let go; name it once", from->pins[i]);
-            model->released[chosen[j]] = true;
-        }
-        release->particle_count += count;
+        int count = 0;
+        status = ck_model_resolve_pin(chosen, &count, model, scene, from->pins[i], path, error);
+        if (!status) status = release_pins(model, release, chosen, count, from->pins[i], scene, path, error);
     }
-    return CK_OK;
+    free(chosen);
+    return status;
 }
 
 static ck_Status set_releases(ck_Model *model, const ck_Scene *scene, ck_Error *error) {

@@ -5,43 +5,45 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Farther than that, in sizes, a pin is not where the scene has it: recordings are in single precision, or rounded.
 #define PIN_SLACK 1e-4
 
-// Where the scene has a particle that it holds or moves; false for one that is free by then.
-static bool find_pin(const ck_Model *model, int particle, double time, double *place) {
-    const ck_Driven *driven = ck_driven_find(model, particle, time);
-    if (driven) ck_driven_at(driven, time, place);
-    if (driven) return true;
-    memcpy(place, model->position + 3 * particle, 3 * sizeof(double));
-    for (int i = 0; i < model->driven_count; i++)
-        if (model->driven[i].particle == particle) return false;
-    return model->pinned[particle] && time < ck_model_release_time(model, particle);
+// The pin that is farthest from where the scene has it.
+typedef struct Stray {
+    int particle;
+    double off, time; // m, s
+} Stray;
+
+static void look_at(Stray *stray, const ck_Run *run, int frame, int particle, const double *place) {
+    const double off = ck_distance(place, ck_trajectory_position(&run->trajectory, frame) + 3 * particle);
+    if (off > stray->off) *stray = (Stray){particle, off, frame * run->model->step};
 }
 
-// A recording whose pins are elsewhere is of another scene.
+// A recording whose pins are elsewhere is of another scene. Those that are let go count as long as they are moved.
 static void show_pins(ck_Answer *answer, const ck_Run *run) {
     const ck_Model *model = run->model;
-    double most = 0, when = 0;
-    int farthest = -1;
-    for (int frame = 0; frame < run->trajectory.frame_count; frame++)
-        for (int i = 0; i < model->particle_count; i++) {
+    bool *moves = calloc((size_t)model->particle_count, sizeof *moves);
+    Stray stray = {0};
+    for (int i = 0; i < model->driven_count && moves; i++) moves[model->driven[i].particle] = true;
+    for (int frame = 0; frame < run->trajectory.frame_count && moves; frame++) {
+        for (int i = 0; i < model->driven_count; i++) {
             double place[3];
-            const double time = frame * model->step;
-            if (!find_pin(model, i, time, place)) continue;
-            const double off = ck_distance(place, ck_trajectory_position(&run->trajectory, frame) + 3 * i);
-            if (!(off > most)) continue;
-            most = off;
-            when = time;
-            farthest = i;
+            if (!ck_driven_holds(model, &model->driven[i], frame * model->step)) continue;
+            ck_driven_at(&model->driven[i], frame * model->step, place);
+            look_at(&stray, run, frame, model->driven[i].particle, place);
         }
-    if (farthest >= 0 && most > PIN_SLACK * model->size)
+        for (int i = 0; i < model->particle_count; i++)
+            if (ck_model_is_held(model, i) && !moves[i]) look_at(&stray, run, frame, i, model->position + 3 * i);
+    }
+    free(moves);
+    if (stray.off > PIN_SLACK * model->size)
         ck_answer_line(answer, CK_ANSWER_NOTE,
                        "%s: particle %d, a pin, is %.3g m from where the scene has it at t = %.3g s: that is another "
                        "scene, and its errors are of that, too",
-                       run->engine->name, farthest, most, when);
+                       run->engine->name, stray.particle, stray.off, stray.time);
 }
 
 static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {

@@ -81,14 +81,38 @@ static ck_Status set_path(ck_Model *model, const ck_ScenePath *from, const ck_Sc
     return CK_OK;
 }
 
-static ck_Status add_driven(ck_Model *model, int particle, const char *pin, const ck_Scene *scene, const char *place,
-                            ck_Error *error) {
+// Of each particle, so that wide edges are not searched for each of their pins. Arrays [n].
+typedef struct Pins {
+    int *chosen;
+    bool *moves;
+    double *until; // s: when it is let go; INFINITY: never
+} Pins;
+
+static ck_Status create_pins(Pins *pins, const ck_Model *model) {
+    const size_t count = (size_t)model->particle_count;
+    *pins = (Pins){malloc(count * sizeof *pins->chosen), calloc(count, sizeof *pins->moves),
+                   malloc(count * sizeof *pins->until)};
+    if (!pins->chosen || !pins->moves || !pins->until) return CK_NO_MEMORY;
+    for (size_t i = 0; i < count; i++) pins->until[i] = INFINITY;
+    for (int i = 0; i < model->release_count; i++)
+        for (int k = 0; k < model->releases[i].particle_count; k++)
+            pins->until[model->releases[i].particles[k]] = model->releases[i].frame * model->step;
+    return CK_OK;
+}
+
+static void free_pins(Pins *pins) {
+    free(pins->chosen);
+    free(pins->moves);
+    free(pins->until);
+}
+
+static ck_Status add_driven(ck_Model *model, Pins *pins, int particle, const char *pin, const ck_Scene *scene,
+                            const char *place, ck_Error *error) {
     if (!model->pinned[particle])
         return ck_scene_fail(scene, place, error, "%s is not pinned, so that it cannot be moved; add it to pins", pin);
-    for (int i = 0; i < model->driven_count; i++)
-        if (model->driven[i].particle == particle)
-            return ck_scene_fail(scene, place, error, "%s already moves; name it once", pin);
-    const double until = ck_model_release_time(model, particle), from = model->paths[model->path_count - 1].from;
+    if (pins->moves[particle]) return ck_scene_fail(scene, place, error, "%s already moves; name it once", pin);
+    pins->moves[particle] = true;
+    const double until = pins->until[particle], from = model->paths[model->path_count - 1].from;
     if (from >= until)
         return ck_scene_fail(scene, place, error, "%s is let go at %g s, before its path begins at %g s", pin, until,
                              from);
@@ -98,7 +122,7 @@ static ck_Status add_driven(ck_Model *model, int particle, const char *pin, cons
     return CK_OK;
 }
 
-static ck_Status set_move(ck_Model *model, const ck_Scene *scene, uint32_t index, int *chosen, ck_Error *error) {
+static ck_Status set_move(ck_Model *model, const ck_Scene *scene, uint32_t index, Pins *pins, ck_Error *error) {
     const ck_SceneMove *from = &scene->file->moves[index];
     char place[64];
     snprintf(place, sizeof place, "moves[%u].path", index);
@@ -106,21 +130,22 @@ static ck_Status set_move(ck_Model *model, const ck_Scene *scene, uint32_t index
     for (uint32_t i = 0; i < from->pins_count && !status; i++) {
         int count = 0;
         snprintf(place, sizeof place, "moves[%u].pins[%u]", index, i);
-        status = ck_model_resolve_pin(chosen, &count, model, scene, from->pins[i], place, error);
+        status = ck_model_resolve_pin(pins->chosen, &count, model, scene, from->pins[i], place, error);
         for (int j = 0; j < count && !status; j++)
-            status = add_driven(model, chosen[j], from->pins[i], scene, place, error);
+            status = add_driven(model, pins, pins->chosen[j], from->pins[i], scene, place, error);
     }
     return status;
 }
 
 ck_Status ck_model_set_paths(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneFile *file = scene->file;
-    int *chosen = malloc(sizeof *chosen * (size_t)model->particle_count);
+    Pins pins;
+    ck_Status status = create_pins(&pins, model);
     // driven pins point to paths, which therefore never move
     model->paths = calloc((size_t)file->moves_count + file->colliders_count + 1, sizeof *model->paths);
     model->driven = calloc((size_t)model->pin_count + 1, sizeof *model->driven);
-    ck_Status status = chosen && model->paths && model->driven ? CK_OK : CK_NO_MEMORY;
-    for (uint32_t i = 0; i < file->moves_count && !status; i++) status = set_move(model, scene, i, chosen, error);
+    if (!model->paths || !model->driven) status = CK_NO_MEMORY;
+    for (uint32_t i = 0; i < file->moves_count && !status; i++) status = set_move(model, scene, i, &pins, error);
     for (uint32_t i = 0; i < file->colliders_count && !status; i++) {
         char place[48];
         if (!file->colliders[i].path) continue;
@@ -128,6 +153,6 @@ ck_Status ck_model_set_paths(ck_Model *model, const ck_Scene *scene, ck_Error *e
         status = set_path(model, file->colliders[i].path, scene, place, error);
         model->colliders[i].path = &model->paths[model->path_count - 1];
     }
-    free(chosen);
+    free_pins(&pins);
     return status;
 }
