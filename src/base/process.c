@@ -163,16 +163,17 @@ static void last_line(char *line, size_t size, Tail *tail) {
     snprintf(line, size, "%.*s", (int)(tail->length - start), tail->text + start);
 }
 
-// True where a process was started with the mark of a child.
+// True where a process was started with the mark of a child, however much else is in its environment.
 static bool has_mark(const char *process, const char *mark) {
-    char path[64], text[16384];
+    char path[64], *word = NULL;
+    size_t room = 0;
+    bool has = false;
     snprintf(path, sizeof path, "/proc/%.20s/environ", process);
-    FILE *file = fopen(path, "r");
-    size_t length = file ? fread(text, 1, sizeof text, file) : 0, size = strlen(mark) + 1;
+    FILE *file = fopen(path, "re");
+    while (file && !has && getdelim(&word, &room, 0, file) > 0) has = !strcmp(word, mark);
     if (file) fclose(file);
-    for (size_t i = 0; i + size <= length; i++)
-        if ((!i || !text[i - 1]) && !memcmp(text + i, mark, size)) return true;
-    return false;
+    free(word);
+    return has;
 }
 
 // Ends what programs of a child have left running, whoever its parent is by now, and waits until it is gone. What it

@@ -76,13 +76,14 @@ static ck_Status parse(ck_Document *document, ck_Error *error) {
     if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
     yaml_parser_set_input_string(&parser, document->text, document->length);
     document->has_yaml = yaml_parser_load(&parser, &document->yaml);
-    if (!document->has_yaml)
+    if (!document->has_yaml && parser.error == YAML_MEMORY_ERROR)
+        status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
+    else if (!document->has_yaml)
         status =
             ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", document->path, parser.problem_mark.line + 1,
                     parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
     else if (!yaml_document_get_root_node(&document->yaml))
-        status = ck_fail(error, CK_BAD_INPUT,
-                         "%s:1:1: is empty; a %s needs %s", document->path, document->kind->name,
+        status = ck_fail(error, CK_BAD_INPUT, "%s:1:1: is empty; a %s needs %s", document->path, document->kind->name,
                          document->kind->needs);
     yaml_parser_delete(&parser);
     return status;
@@ -90,7 +91,8 @@ static ck_Status parse(ck_Document *document, ck_Error *error) {
 
 ck_Status ck_document_load(ck_Document *document, const char *path, const ck_DocumentKind *kind, ck_Error *error) {
     ck_Change change;
-    *document = (ck_Document){.kind = kind, .path = strdup(path), .file = strndup(path, (size_t)ck_change_file_length(path))};
+    *document =
+        (ck_Document){.kind = kind, .path = strdup(path), .file = strndup(path, (size_t)ck_change_file_length(path))};
     if (!document->path || !document->file) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
     ck_Status status = read_text(document, error);
     if (!status) status = parse(document, error);

@@ -11,6 +11,7 @@
 #include <nettle/base64.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -21,6 +22,7 @@ typedef struct Page {
     const bool *drawn;
     ck_Findings findings;
     FILE *file;
+    char nonce[33]; // that its scripts and styles are known by, so that no text of a CSV is run as one
 } Page;
 
 // Text of a JSON string, on one line.
@@ -236,6 +238,22 @@ static ck_Status include(const Page *page, const char *name, ck_Error *error) {
     return status;
 }
 
+static ck_Status choose_nonce(Page *page, ck_Error *error) {
+    unsigned char bytes[16];
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
+        return ck_fail(error, CK_IO, "no random numbers: %s", strerror(errno));
+    for (size_t i = 0; i < sizeof bytes; i++) snprintf(page->nonce + 2 * i, 3, "%02x", bytes[i]);
+    return CK_OK;
+}
+
+// A line of the template, with the nonce where it has its place.
+static void write_line(const Page *page, const char *line) {
+    static const char word[] = "@nonce";
+    for (const char *place; (place = strstr(line, word)); line = place + strlen(word))
+        fprintf(page->file, "%.*s%s", (int)(place - line), line, page->nonce);
+    fprintf(page->file, "%s\n", line);
+}
+
 static ck_Status fill_template(const Page *page, char *template, ck_Error *error) {
     static const char include_word[] = "@include ";
     ck_Status status = CK_OK;
@@ -246,7 +264,7 @@ static ck_Status fill_template(const Page *page, char *template, ck_Error *error
         else if (!strcmp(line, "@report"))
             status = write_report(page, error);
         else
-            fprintf(page->file, "%s\n", line);
+            write_line(page, line);
     }
     return status;
 }
@@ -259,6 +277,7 @@ ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const ch
     ck_Status status = source ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_file_read(&template, &size, source, error);
     if (!status) status = find_results(&page, error);
+    if (!status) status = choose_nonce(&page, error);
     if (!status && !(page.file = fopen(path, "w"))) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
     if (!status) status = fill_template(&page, template, error);
     if (page.file) {
