@@ -12,9 +12,9 @@ do for [p = 0:panels - 1] {
 	unset logscale
 	set format xy '%g'
 	if (STATS_min > 0 && STATS_max > 8*STATS_min) { set logscale x }
-	if (of eq 'error') { set logscale y; set format y '10^{%L}' }
+	if (of eq 'error' || of eq 'cost') { set logscale y; set format y '10^{%L}' }
 	set xlabel key noenhanced
-	label = of eq 'error' ? metric.', distance to the truth' : metric
+	label = of eq 'error' ? metric.', distance to the truth' : metric eq 'cost' ? 'CPU, ms per simulated second' : of eq 'cost' ? metric.', s of CPU' : metric
 	set ylabel label noenhanced
 	set title scene noenhanced
 	# one legend for all

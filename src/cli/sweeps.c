@@ -153,6 +153,8 @@ static void say_rest(ck_Sweeps *sweeps, const ck_SweepProgress *progress) {
 ck_Status ck_sweeps_open(ck_Sweeps *sweeps, ck_Error *error) {
     ck_Arguments *arguments = sweeps->arguments;
     const int jobs = arguments->options.jobs, cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    // what is timed is not run side by side
+    const bool is_timed = sweeps->file.run == CK_STUDY_PRECISION || sweeps->file.run == CK_STUDY_NEEDS;
     sweeps->options = (ck_SweepOptions){.file = &sweeps->file,
                                         .paths = sweeps->paths,
                                         .compare = &arguments->options,
@@ -230,15 +232,12 @@ static ck_Status take_scenes(ck_Sweeps *sweeps, ck_StudyRun run, ck_Error *error
 }
 
 int ck_sweeps_of_scenes(ck_Arguments *arguments, ck_StudyRun run) {
-    // what is timed is not run side by side
-    const bool is_timed = run == CK_STUDY_PRECISION || run == CK_STUDY_NEEDS;
     ck_Sweeps *sweeps = calloc(1, sizeof *sweeps);
     ck_Error error = {0};
     ck_SweepProgress progress;
     ck_Status status = sweeps ? CK_OK : ck_fail(&error, CK_NO_MEMORY, "out of memory");
     if (!status) {
         sweeps->arguments = arguments;
-        sweeps->jobs = is_timed ? 1 : 0;
         sweeps->is_by_point = true;
         status = take_scenes(sweeps, run, &error);
     }

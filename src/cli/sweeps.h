@@ -9,7 +9,6 @@ typedef struct ck_Sweeps {
     ck_Arguments *arguments;
     ck_StudyFile file;
     char *const *paths;        // of its scenes
-    int jobs;                  // where the user says nothing; 0: one a core
     bool is_by_point;          // all engines of a point are one case
     char again[CK_SWEEP_WORD]; // the command that goes on with it
     ck_SweepOptions options;

@@ -203,17 +203,18 @@ static void add_chart(ck_Csv *csv, const char *x, const char *metric, const char
 
 // What the file asks for, or what is off against each swept number.
 static ck_Status write_charts(const ck_Sweep *sweep, ck_Error *error) {
-    static const char *const metrics[] = {"sag", "position_rms"};
+    static const char *const metrics[2][2] = {{"position_rms", "cost"}, {"cost_to_1_percent", "floor"}};
     const ck_StudyFile *file = sweep->options->file;
     ck_Csv csv = {0};
-    if (file->run != CK_STUDY_COMPARE) return CK_OK;
+    const bool is_precision = file->run == CK_STUDY_PRECISION;
+    if (file->run != CK_STUDY_COMPARE && !is_precision) return CK_OK;
     ck_Status status = ck_csv_open(&csv, sweep->options->directory, &ck_layouts[CK_STUDY_CHARTS], error);
     for (int i = 0; i < file->chart_count && !status; i++)
         add_chart(&csv, file->charts[i].x, file->charts[i].metric, file->charts[i].of);
     for (int i = 0; i < file->axis_count && !file->chart_count && !status; i++)
         for (int k = 0; k < file->axes[i].key_count; k++)
             for (int m = 0; m < 2 && is_numeric(&file->axes[i], k); m++)
-                add_chart(&csv, file->axes[i].keys[k], metrics[m], "error");
+                add_chart(&csv, file->axes[i].keys[k], metrics[is_precision][m], "error");
     if (!status) status = ck_csv_close(&csv, error);
     ck_csv_discard(&csv);
     return status;

@@ -53,11 +53,22 @@ static ck_Status find_engines(Study *study, ck_Error *error) {
     return status;
 }
 
+// Beside metrics a chart may be of the cost, or of a quantity of precision's summary.
+static bool is_charted(const ck_StudyFile *file, const char *metric) {
+    if (file->run == CK_STUDY_PRECISION)
+        return !strncmp(metric, "cost_to_", 8) || !strcmp(metric, "order") || !strcmp(metric, "floor");
+    return file->run == CK_STUDY_COMPARE && (ck_metric_find(metric) || !strcmp(metric, "cost"));
+}
+
 static ck_Status check_charts(const ck_StudyFile *file, ck_Error *error) {
     for (int i = 0; i < file->chart_count; i++)
-        if (!ck_metric_find(file->charts[i].metric))
-            return ck_document_fail(&file->document, ck_document_find(&file->document, "charts"), error,
-                                    "there is no metric %s; 'clothcheck list' tells them", file->charts[i].metric);
+        if (!is_charted(file, file->charts[i].metric))
+            return ck_document_fail(
+                &file->document, ck_document_find(&file->document, "charts"), error,
+                "there is no chart of %s: compare has cost and the metrics that 'clothcheck list' "
+                "tells, precision cost_to_10_percent, cost_to_1_percent, cost_to_0.1_percent, order "
+                "and floor, others have none",
+                file->charts[i].metric);
     return CK_OK;
 }
 

@@ -12,21 +12,42 @@
 // What an error of nothing is drawn at on a logarithmic axis.
 #define LEAST_ERROR 1e-16
 
+// Swept keys that are looked at, and values of one.
+#define MOST_KEYS 32
+#define MOST_VALUES 256
+
 // A row of a chart: one engine at one point.
 typedef struct Point {
     int panel, engine, row;
     double x, y;
 } Point;
 
+// Where a chart's numbers are: the CSV, and its columns of names and values. NULL in names: one number a row.
+typedef struct Source {
+    ck_LayoutName layout;
+    const char *names, *value, *error;
+} Source;
+static const Source sources[] = {{CK_METRICS, "metric", "value", "error"},
+                                 {CK_PRECISION_SUMMARY, "quantity", "value", "value"},
+                                 {CK_RUNS, NULL, "cpu_median_s", "cpu_median_s"}};
+#define SOURCES ((int)(sizeof sources / sizeof *sources))
+
+// A chart that is drawn, of one scene.
+typedef struct Panel {
+    const char *scene, *x, *metric, *of;
+    const Source *source;
+    const ck_CsvTable *table;
+    int key; // column of x
+    bool is_cost;
+    bool parts[MOST_KEYS]; // of the columns behind of_scene: rows that differ there are not of one line
+} Panel;
+
 typedef struct Sweep {
     const ck_ReportData *data;
-    const ck_CsvTable *metrics, *charts;
-    int of_scene; // column
-    Point *points;
-    int count;
-    const char *scenes[MOST_PANELS]; // of each panel
-    int chart_of[MOST_PANELS];       // row of study_charts.csv
+    Panel panels[MOST_PANELS];
     int panel_count;
+    Point *points;
+    int count, capacity;
 } Sweep;
 
 static double number_at(const ck_CsvTable *table, int row, int column) {
@@ -36,43 +57,106 @@ static double number_at(const ck_CsvTable *table, int row, int column) {
     return *text && !*end ? number : NAN;
 }
 
-// The panel of a chart and a scene; −1: there is no room for it.
-static int find_panel(Sweep *sweep, int chart, const char *scene) {
-    for (int i = 0; i < sweep->panel_count; i++)
-        if (sweep->chart_of[i] == chart && !strcmp(sweep->scenes[i], scene)) return i;
+// Which of the CSVs has a chart's metric: "cost" are milliseconds of CPU per simulated second.
+static bool find_source(Panel *panel, const ck_ReportData *data) {
+    for (int i = 0; i < SOURCES; i++) {
+        const ck_CsvTable *table = ck_report_table(data, sources[i].layout);
+        if (!table || (panel->key = ck_csv_table_extra(table, panel->x)) < 0) continue;
+        bool has = !sources[i].names && !strcmp(panel->metric, "cost");
+        for (int row = 0; row < table->row_count && !has && sources[i].names; row++)
+            has = !strcmp(ck_csv_text_of(table, row, sources[i].names), panel->metric);
+        panel->source = &sources[i];
+        panel->table = table;
+        panel->is_cost = !strncmp(panel->metric, "cost", 4);
+        if (has) return true;
+    }
+    return false;
+}
+
+// True where a key goes with the chart's: each value of the one has one of the other.
+static bool is_tied(const Panel *panel, int column) {
+    const ck_CsvTable *table = panel->table;
+    int rows[MOST_VALUES], count = 0;
+    for (int row = 0; row < table->row_count; row++) {
+        int k = 0;
+        while (k < count &&
+               strcmp(ck_csv_table_text(table, rows[k], panel->key), ck_csv_table_text(table, row, panel->key)))
+            k++;
+        if (k == MOST_VALUES) return false;
+        if (k == count)
+            rows[count++] = row;
+        else if (strcmp(ck_csv_table_text(table, rows[k], column), ck_csv_table_text(table, row, column)))
+            return false;
+    }
+    return true;
+}
+
+static void find_parting(Panel *panel) {
+    const int first = ck_csv_table_extra(panel->table, "of_scene") + 1;
+    for (int i = first; i < panel->table->width && i - first < MOST_KEYS; i++)
+        panel->parts[i - first] = i != panel->key && !is_tied(panel, i);
+}
+
+// The panel of a scene, beside those of a chart that begin at first; −1: there is no room for it.
+static int find_panel(Sweep *sweep, const Panel *of, int first, const char *scene) {
+    for (int i = first; i < sweep->panel_count; i++)
+        if (!strcmp(sweep->panels[i].scene, scene)) return i;
     if (sweep->panel_count == MOST_PANELS) return -1;
-    sweep->scenes[sweep->panel_count] = scene;
-    sweep->chart_of[sweep->panel_count] = chart;
+    sweep->panels[sweep->panel_count] = *of;
+    sweep->panels[sweep->panel_count].scene = scene;
     return sweep->panel_count++;
 }
 
-static void gather(Sweep *sweep, int chart) {
-    const ck_CsvTable *metrics = sweep->metrics;
-    const char *metric = ck_csv_text_of(sweep->charts, chart, "metric"),
-               *of = ck_csv_text_of(sweep->charts, chart, "of");
-    const int key = ck_csv_table_extra(metrics, ck_csv_text_of(sweep->charts, chart, "x"));
-    const bool is_error = !strcmp(of, "error");
-    for (int row = 0; row < metrics->row_count && key >= 0; row++) {
-        if (strcmp(ck_csv_text_of(metrics, row, "metric"), metric)) continue;
-        const char *engine = ck_csv_text_of(metrics, row, "engine");
-        const double x = number_at(metrics, row, key), y = ck_csv_number_of(metrics, row, is_error ? "error" : "value");
-        if (!isfinite(x) || !isfinite(y) || !strcmp(engine, "still") || (is_error && y > MOST_ERROR)) continue;
-        const int panel = find_panel(sweep, chart, ck_csv_table_text(metrics, row, sweep->of_scene));
-        if (panel < 0) continue;
-        sweep->points[sweep->count++] =
-            (Point){panel, ck_report_engine(sweep->data, engine), row, x, is_error ? fmax(y, LEAST_ERROR) : y};
-    }
+static double value_at(const Panel *panel, int row) {
+    const ck_CsvTable *table = panel->table;
+    const bool is_error = !strcmp(panel->of, "error");
+    const double value = ck_csv_number_of(table, row, is_error ? panel->source->error : panel->source->value);
+    if (!panel->source->names) return 1e3 * value / ck_csv_number_of(table, row, "simulated_s");
+    if (!is_error || panel->is_cost) return value;
+    return value > MOST_ERROR ? NAN : fmax(value, LEAST_ERROR);
 }
 
-// The order of two rows in all swept keys but the chart's own: a line of its own for each.
+static bool add_point(Sweep *sweep, const Point *point) {
+    if (sweep->count == sweep->capacity) {
+        const int more = sweep->capacity ? 2 * sweep->capacity : 1024;
+        Point *grown = realloc(sweep->points, sizeof *grown * (size_t)more);
+        if (!grown) return false;
+        sweep->points = grown;
+        sweep->capacity = more;
+    }
+    sweep->points[sweep->count++] = *point;
+    return true;
+}
+
+static bool gather(Sweep *sweep, Panel *of) {
+    const int first = sweep->panel_count;
+    if (!find_source(of, sweep->data)) return true;
+    find_parting(of);
+    const ck_CsvTable *table = of->table;
+    const int of_scene = ck_csv_table_extra(table, "of_scene");
+    for (int row = 0; row < table->row_count; row++) {
+        const char *engine = ck_csv_text_of(table, row, "engine");
+        if (of->source->names && strcmp(ck_csv_text_of(table, row, of->source->names), of->metric)) continue;
+        const double x = number_at(table, row, of->key), y = value_at(of, row);
+        if (!isfinite(x) || !isfinite(y) || !strcmp(engine, "still")) continue;
+        const int panel = find_panel(sweep, of, first, ck_csv_table_text(table, row, of_scene));
+        if (panel >= 0 && !add_point(sweep, &(Point){panel, ck_report_engine(sweep->data, engine), row, x, y}))
+            return false;
+    }
+    return true;
+}
+
+// The order of two rows in all swept keys but the chart's own, and of costs in the machine: a line of its own for each.
 static int compare_lines(const Sweep *sweep, const Point *one, const Point *other) {
-    const int key = ck_csv_table_extra(sweep->metrics, ck_csv_text_of(sweep->charts, sweep->chart_of[one->panel], "x"));
+    const Panel *panel = &sweep->panels[one->panel];
+    const ck_CsvTable *table = panel->table;
+    const int first = ck_csv_table_extra(table, "of_scene") + 1;
     int order = 0;
-    for (int i = sweep->of_scene + 1; i < sweep->metrics->width && !order; i++)
-        if (i != key)
-            order = strcmp(ck_csv_table_text(sweep->metrics, one->row, i),
-                           ck_csv_table_text(sweep->metrics, other->row, i));
-    return order;
+    for (int i = first; i < table->width && i - first < MOST_KEYS && !order; i++)
+        if (panel->parts[i - first])
+            order = strcmp(ck_csv_table_text(table, one->row, i), ck_csv_table_text(table, other->row, i));
+    if (order || !panel->is_cost) return order;
+    return strcmp(ck_report_machine(sweep->data, table, one->row), ck_report_machine(sweep->data, table, other->row));
 }
 
 static int compare_points(const void *a, const void *b, void *context) {
@@ -90,23 +174,22 @@ static bool is_next_line(const Sweep *sweep, int index) {
 
 int ck_chart_select_sweep(const ck_ReportData *data, const char *scene, FILE *out) {
     (void)scene;
-    Sweep sweep = {
-        .data = data, .metrics = ck_report_table(data, CK_METRICS), .charts = ck_report_table(data, CK_STUDY_CHARTS)};
-    if (!sweep.metrics || !sweep.charts) return 0;
-    sweep.of_scene = ck_csv_table_extra(sweep.metrics, "of_scene");
-    if (sweep.of_scene < 0) return 0;
-    sweep.points =
-        malloc(sizeof *sweep.points * ((size_t)sweep.metrics->row_count * (size_t)sweep.charts->row_count + 1));
-    for (int i = 0; i < sweep.charts->row_count && sweep.points; i++) gather(&sweep, i);
+    const ck_CsvTable *charts = ck_report_table(data, CK_STUDY_CHARTS);
+    Sweep sweep = {.data = data};
+    for (int i = 0; charts && i < charts->row_count; i++) {
+        Panel panel = {.x = ck_csv_text_of(charts, i, "x"),
+                       .metric = ck_csv_text_of(charts, i, "metric"),
+                       .of = ck_csv_text_of(charts, i, "of")};
+        if (!gather(&sweep, &panel)) break;
+    }
     if (sweep.count) qsort_r(sweep.points, (size_t)sweep.count, sizeof *sweep.points, compare_points, &sweep);
     for (int i = 0; i < sweep.count; i++) {
         const Point *point = &sweep.points[i];
-        const int chart = sweep.chart_of[point->panel];
+        const Panel *panel = &sweep.panels[point->panel];
         // lines are told apart by an empty one
         if (i && is_next_line(&sweep, i)) fputc('\n', out);
         fprintf(out, "%s,%.9g,%.9g,%d,%s,%s,%s,%s\n", data->engines[point->engine], point->x, point->y, point->panel,
-                ck_csv_text_of(sweep.charts, chart, "x"), ck_csv_text_of(sweep.charts, chart, "metric"),
-                ck_csv_text_of(sweep.charts, chart, "of"), sweep.scenes[point->panel]);
+                panel->x, panel->metric, panel->is_cost ? "cost" : panel->of, panel->scene);
     }
     free(sweep.points);
     return sweep.count;

@@ -149,8 +149,7 @@ static int find_answer(const ck_CsvTable *metrics, const char *scene, const char
     return -1;
 }
 
-// The processor of a study's row, by its host. Cost: the rows of study.csv before that host's first.
-static const char *machine_of(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
+const char *ck_report_machine(const ck_ReportData *data, const ck_CsvTable *runs, int row) {
     const ck_CsvTable *study = ck_report_table(data, CK_STUDY);
     const int column = ck_csv_table_extra(runs, "host");
     const char *host = column < 0 ? "" : ck_csv_table_text(runs, row, column);
@@ -165,7 +164,7 @@ static ck_Summary sum_up(const ck_ReportData *data, const ck_CsvTable *runs, int
         .scene = ck_csv_table_text(runs, row, 0),
         .engine = ck_csv_table_text(runs, row, 1),
         .status = ck_csv_text_of(runs, row, "status"),
-        .machine = machine_of(data, runs, row),
+        .machine = ck_report_machine(data, runs, row),
         .metric = "",
         .error = NAN,
         .uncertainty = NAN,

@@ -54,6 +54,10 @@ bool ck_report_shows(const char *metric);
 // True where a row is of a scene, which stands in the first column.
 bool ck_report_is_of(const ck_CsvTable *table, int row, const char *scene);
 
+// The processor of a study's row, by its host; "" where the row has none. Cost: the rows of study.csv before that
+// host's first.
+const char *ck_report_machine(const ck_ReportData *data, const ck_CsvTable *table, int row);
+
 // Where the engine is in data->engines.
 int ck_report_engine(const ck_ReportData *data, const char *engine);
 
