@@ -160,10 +160,9 @@ ck_Status ck_sweeps_open(ck_Sweeps *sweeps, ck_Error *error) {
                                         .compare = &arguments->options,
                                         .directory = arguments->out,
                                         .command = run_words,
-                                        .jobs = jobs           ? jobs
-                                                : sweeps->jobs ? sweeps->jobs
-                                                : cores > 0    ? cores
-                                                               : 1,
+                                        .jobs = jobs                    ? jobs
+                                                : is_timed || cores < 1 ? 1
+                                                                        : cores,
                                         .shard = arguments->shard,
                                         .shards = arguments->shards,
                                         .case_limit = arguments->case_limit,
