@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 // With more points than that each is loaded only where it is run.
 #define MOST_CHECKED 3000
@@ -187,6 +188,22 @@ static uint64_t hash_truth(const ck_Sweep *sweep, int point) {
     return ck_hash(hash, &sweep->options->compare->limits.seconds, sizeof(double));
 }
 
+// An engine from outside is what its files hold: those that the words which name it are, or end in.
+static uint64_t hash_outside(uint64_t hash, const ck_Outside *outside) {
+    char *words = outside && outside->arguments ? strdup(outside->arguments) : NULL, *rest = words;
+    hash = hash_text(hash, words);
+    for (char *word; words && (word = strsep(&rest, " =\t'\""));) {
+        struct stat about;
+        char *bytes = NULL;
+        size_t size;
+        if (!*word || stat(word, &about) || !S_ISREG(about.st_mode)) continue;
+        if (!ck_file_read(&bytes, &size, word, NULL)) hash = ck_hash(hash, bytes, size);
+        free(bytes);
+    }
+    free(words);
+    return hash;
+}
+
 static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
     const ck_SweepOptions *options = sweep->options;
     const ck_StudyFile *file = options->file;
@@ -197,6 +214,7 @@ static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
     for (int i = 0; i < compare->engine_count; i++) {
         if (sweep->is_by_engine && i != engine) continue;
         hash = hash_text(hash_text(hash, compare->engines[i]->name), ck_engine_version(compare->engines[i]));
+        hash = ck_hash(hash, &sweep->engine_hashes[i], sizeof sweep->engine_hashes[i]);
     }
     for (int i = 0; i < file->option_count; i++) hash = hash_text(hash, file->options[i]);
     hash = hash_text(hash_text(hash, file->settings), ck_machine_build());
@@ -206,7 +224,8 @@ static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
                               compare->limits.seconds,
                               (double)compare->limits.memory_bytes,
                               compare->limits.patience,
-                              (double)compare->seed};
+                              (double)compare->seed,
+                              file->run == CK_STUDY_COMPARE ? 0 : options->case_limit};
     return ck_hash(hash, numbers, sizeof numbers);
 }
 
@@ -292,6 +311,8 @@ ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Er
         status = check_word(options->paths[i], &sweep->scene_hashes[i], &solves[i], &sweep->names[i], error);
         if (!status) status = check_axes(sweep, i, error);
     }
+    for (int i = 0; i < options->compare->engine_count; i++)
+        sweep->engine_hashes[i] = hash_outside(CK_HASH_START, options->compare->engines[i]->outside);
     if (!status) status = check_points(sweep, error);
     if (!status) status = find_truths(sweep, solves, error);
     if (!status) status = find_keys(sweep, error);

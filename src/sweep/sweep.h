@@ -34,11 +34,12 @@ typedef struct ck_Sweep {
     bool is_by_engine;
     char **names; // of the scenes
     uint64_t *scene_hashes;
-    int *truth_of;  // [points] the case of its truth; −1: it needs none
-    int *truth_at;  // [truths] a point that has it
-    uint64_t *keys; // [cases] hashes of all that they depend on
-    uint64_t study; // and of all of them
-    double *work;   // [points] that a run is in proportion to; 1 where it is not known
+    uint64_t engine_hashes[CK_COMPARISON_MAX_ENGINES]; // of what those from outside are
+    int *truth_of;                                     // [points] the case of its truth; −1: it needs none
+    int *truth_at;                                     // [truths] a point that has it
+    uint64_t *keys;                                    // [cases] hashes of all that they depend on
+    uint64_t study;                                    // and of all of them
+    double *work; // [points] that a run is in proportion to; 1 where it is not known
 } ck_Sweep;
 
 // Loads every scene at every value, one key changed at a time, and with at most 3,000 points at each of them.

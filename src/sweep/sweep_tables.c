@@ -224,8 +224,8 @@ static ck_Status check_whole(const ck_Sweep *sweep, const ck_Store *store, ck_Er
     int missing = 0;
     for (int i = 0; i < sweep->case_count; i++) missing += !ck_store_find(store, sweep->keys[i]);
     if (!missing) return CK_OK;
-    return ck_fail(error, CK_BAD_INPUT, "%s: %d of %d cases are missing", sweep->options->directory, missing,
-                   sweep->case_count);
+    return ck_fail(error, CK_BAD_INPUT, "%s: %d of %d cases are missing; without --kept they are run",
+                   sweep->options->directory, missing, sweep->case_count);
 }
 
 ck_Status ck_sweep_write(const ck_Sweep *sweep, ck_Error *error) {
