@@ -4,7 +4,10 @@
 #include "files.h"
 #include "store.h"
 
+#include <fcntl.h>
 #include <ftw.h>
+#include <glob.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,25 +28,54 @@ static int remove_entry(const char *path, const struct stat *about, int type, st
     return remove(path);
 }
 
+// True where no process has a case of any study in a folder.
+static bool is_idle(const char *folder) {
+    glob_t found;
+    char pattern[PATH_MAX];
+    bool is = true;
+    snprintf(pattern, sizeof pattern, "%s/board-*", folder);
+    if (glob(pattern, 0, NULL, &found)) found.gl_pathc = 0;
+    for (size_t i = 0; i < found.gl_pathc && is; i++) {
+        const ck_Board board = {.file = open(found.gl_pathv[i], O_RDWR | O_CLOEXEC)};
+        is = board.file < 0 || ck_board_is_free(&board);
+        if (board.file >= 0) close(board.file);
+    }
+    if (found.gl_pathc) globfree(&found);
+    return is;
+}
+
+// The first CSV of a report that is there.
+static const char *find_results(const char *out) {
+    for (int i = 0; i < CK_REPORT_LAYOUTS; i++) {
+        char *path = ck_path_join(out, ck_layouts[i].file);
+        const bool is_there = path && i != CK_MACHINE && !access(path, F_OK);
+        free(path);
+        if (is_there) return ck_layouts[i].file;
+    }
+    return NULL;
+}
+
 // What a folder holds already: cases of this study or of another one stay, results of other commands would be lost.
 static ck_Status check_folder(const ck_Sweeps *sweeps, ck_Error *error) {
-    const char *out = sweeps->arguments->out;
-    char *folder = ck_sweep_folder(out), *runs = ck_path_join(out, ck_layouts[CK_RUNS].file);
-    ck_Status status = folder && runs ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    ck_Board board = {.file = -1};
-    if (!status && sweeps->arguments->forces && !access(folder, F_OK)) {
-        status = ck_board_open(&board, folder, sweeps->sweep.study, error);
-        if (!status && !ck_board_is_free(&board))
-            status = ck_fail(error, CK_BAD_INPUT, "%s: this study is running there; wait, or give another --out", out);
-        ck_board_close(&board);
-        if (!status) nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
-    } else if (!status && access(folder, F_OK) && !access(runs, F_OK) && !sweeps->arguments->forces)
+    const ck_Arguments *arguments = sweeps->arguments;
+    const char *out = arguments->out, *results = find_results(out);
+    char *folder = ck_sweep_folder(out);
+    if (!folder) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    const bool has_cases = !access(folder, F_OK);
+    ck_Status status = CK_OK;
+    if (arguments->forces && arguments->runs_nothing)
+        status =
+            ck_fail(error, CK_BAD_INPUT, "--kept writes what is there, and --force removes it: give one of the two");
+    else if (arguments->forces && has_cases && !is_idle(folder))
+        status = ck_fail(error, CK_BAD_INPUT, "%s: a study is running there; wait, or give another --out", out);
+    else if (arguments->forces && has_cases)
+        nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+    else if (results && !has_cases && !arguments->forces)
         status = ck_fail(error, CK_BAD_INPUT,
-                         "%s: holds results that are of no study, which would be lost; --force replaces them, another "
-                         "--out leaves them",
-                         runs);
+                         "%s/%s: holds results that are of no study, which would be lost; --force replaces them, "
+                         "another --out leaves them",
+                         out, results);
     free(folder);
-    free(runs);
     return status;
 }
 
@@ -150,8 +182,25 @@ static void say_rest(ck_Sweeps *sweeps, const ck_SweepProgress *progress) {
         ck_answer_line(&arguments->answer, CK_ANSWER_NEXT, "%s", sweeps->again);
 }
 
+// Limits that are given reach every run, whatever command it is of.
+static void take_limits(ck_Sweeps *sweeps) {
+    const ck_Arguments *arguments = sweeps->arguments;
+    const ck_Limits *limits = &arguments->options.limits;
+    const bool has_time = limits->seconds != arguments->command->seconds,
+               has_memory = limits->memory_bytes != ck_limits_default().memory_bytes;
+    int count = 0;
+    snprintf(sweeps->limits[0], sizeof sweeps->limits[0], "%.17g", limits->seconds);
+    snprintf(sweeps->limits[1], sizeof sweeps->limits[1], "%.17g", (double)limits->memory_bytes / 1048576);
+    if (has_time) sweeps->words[count++] = "--time-limit", sweeps->words[count++] = sweeps->limits[0];
+    if (has_memory) sweeps->words[count++] = "--memory-limit", sweeps->words[count++] = sweeps->limits[1];
+    sweeps->options.words = sweeps->words;
+    // what was asked on the command line of several scenes is among the options already
+    sweeps->options.word_count = sweeps->is_by_point ? 0 : count;
+}
+
 ck_Status ck_sweeps_open(ck_Sweeps *sweeps, ck_Error *error) {
     ck_Arguments *arguments = sweeps->arguments;
+    if (!*arguments->out) return ck_fail(error, CK_BAD_INPUT, "--out has no name; give a folder");
     const int jobs = arguments->options.jobs, cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
     // what is timed is not run side by side
     const bool is_timed = sweeps->file.run == CK_STUDY_PRECISION || sweeps->file.run == CK_STUDY_NEEDS;
@@ -169,6 +218,7 @@ ck_Status ck_sweeps_open(ck_Sweeps *sweeps, ck_Error *error) {
                                         .timeout = arguments->study_timeout,
                                         .is_part = arguments->is_part,
                                         .is_by_point = sweeps->is_by_point};
+    take_limits(sweeps);
     ck_Status status = ck_sweep_create(&sweeps->sweep, &sweeps->options, error);
     return status || arguments->is_dry ? status : check_folder(sweeps, error);
 }
@@ -190,19 +240,23 @@ void ck_sweeps_free(ck_Sweeps *sweeps) {
     ck_study_file_free(&sweeps->file);
 }
 
+static void add_option(ck_StudyFile *file, const char *word) {
+    char *copy = strdup(word);
+    if (copy) file->options[file->option_count++] = copy;
+}
+
 // The words of a command line that say what is asked, without engines, which are asked for by name.
 static ck_Status take_options(ck_StudyFile *file, const char *question, ck_Error *error) {
     char *words = strdup(question), *rest = words;
     if (!words) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    file->options = calloc(strlen(question) + 1, sizeof *file->options);
+    file->options = calloc(strlen(question) + 3, sizeof *file->options);
     strsep(&rest, "\t"); // the command
     for (char *word; file->options && (word = strsep(&rest, "\t"));) {
         if (!strcmp(word, "--engine")) {
             strsep(&rest, "\t");
             continue;
         }
-        char *copy = strdup(word);
-        if (copy) file->options[file->option_count++] = copy;
+        add_option(file, word);
     }
     free(words);
     return file->options ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -227,14 +281,31 @@ static ck_Status take_scenes(ck_Sweeps *sweeps, ck_StudyRun run, ck_Error *error
     if (used < sizeof sweeps->again)
         snprintf(sweeps->again + used, sizeof sweeps->again - used, " --out %s", arguments->out);
     sweeps->paths = arguments->scenes;
-    return take_options(file, arguments->question, error);
+    ck_Status status = take_options(file, arguments->question, error);
+    // of the ways to an answer the one that changes it
+    char timeout[40];
+    snprintf(timeout, sizeof timeout, "%.17g", arguments->timeout);
+    if (!status && run == CK_STUDY_TUNE) {
+        add_option(file, "--timeout");
+        add_option(file, timeout);
+    }
+    return status;
+}
+
+static ck_Status check_several(const ck_Arguments *arguments, ck_StudyRun run, ck_Error *error) {
+    if (arguments->appends)
+        return ck_fail(error, CK_BAD_INPUT, "--append is for one scene; give several an --out of their own");
+    if (run == CK_STUDY_TUNE &&
+        (arguments->options.engines != arguments->engines || arguments->options.engine_count != 1))
+        return ck_fail(error, CK_BAD_INPUT, "tune needs one --engine NAME");
+    return CK_OK;
 }
 
 int ck_sweeps_of_scenes(ck_Arguments *arguments, ck_StudyRun run) {
     ck_Sweeps *sweeps = calloc(1, sizeof *sweeps);
     ck_Error error = {0};
     ck_SweepProgress progress;
-    ck_Status status = sweeps ? CK_OK : ck_fail(&error, CK_NO_MEMORY, "out of memory");
+    ck_Status status = sweeps ? check_several(arguments, run, &error) : ck_fail(&error, CK_NO_MEMORY, "out of memory");
     if (!status) {
         sweeps->arguments = arguments;
         sweeps->is_by_point = true;

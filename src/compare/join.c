@@ -61,6 +61,43 @@ static ck_Status check_machines(const Part *one, const Part *other, ck_Error *er
     return CK_OK;
 }
 
+// Which part of how many a folder holds, as its command says.
+static bool read_shard(const Part *part, int *shard, int *shards) {
+    const ck_CsvTable *machine = &part->tables[CK_MACHINE];
+    for (int i = 0; i < machine->row_count; i++) {
+        if (strcmp(ck_csv_table_text(machine, i, 0), "command")) continue;
+        const char *option = strstr(ck_csv_table_text(machine, i, 1), "--shard");
+        return option && sscanf(option + strlen("--shard"), "%*[ =]%d/%d", shard, shards) == 2;
+    }
+    return false;
+}
+
+// All parts of one comparison, each once.
+static ck_Status check_whole(const Part *parts, int count, ck_Error *error) {
+    for (int i = 0; i < count; i++) {
+        int shard, shards;
+        if (!read_shard(&parts[i], &shard, &shards))
+            return ck_fail(error, CK_BAD_INPUT, "%s: was not written by compare --shard", parts[i].directory);
+        if (shards != count || shard != i + 1)
+            return ck_fail(error, CK_BAD_INPUT, "%s: is part %d of %d, and stands where part %d of %d should",
+                           parts[i].directory, shard, shards, i + 1, count);
+    }
+    return CK_OK;
+}
+
+// The engines of a part's first scene are those of all.
+static ck_Status check_engines(const Part *one, const Part *other, ck_Error *error) {
+    const ck_CsvTable *a = &one->tables[CK_RUNS], *b = &other->tables[CK_RUNS];
+    for (int i = 0; i < a->row_count && i < b->row_count; i++) {
+        if (strcmp(ck_csv_table_text(a, i, 0), one->scenes[0]) && strcmp(ck_csv_table_text(b, i, 0), other->scenes[0]))
+            break;
+        if (strcmp(ck_csv_text_of(a, i, "engine"), ck_csv_text_of(b, i, "engine")))
+            return ck_fail(error, CK_BAD_INPUT, "%s and %s are of other engines: %s and %s", one->directory,
+                           other->directory, ck_csv_text_of(a, i, "engine"), ck_csv_text_of(b, i, "engine"));
+    }
+    return CK_OK;
+}
+
 static ck_Status check_scenes(const Part *parts, int count, ck_Error *error) {
     for (int i = 0; i < count; i++)
         for (int k = 0; k < i; k++)
@@ -127,8 +164,10 @@ ck_Status ck_join(const char *directory, char *const *parts, int part_count, ck_
     for (; count < part_count && !status; count++) {
         status = read_part(&read[count], parts[count], error);
         if (!status && count) status = check_machines(&read[0], &read[count], error);
+        if (!status && count) status = check_engines(&read[0], &read[count], error);
     }
     if (!status) status = check_scenes(read, part_count, error);
+    if (!status) status = check_whole(read, part_count, error);
     if (!status) status = write_all(directory, read, part_count, error);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < CK_COMPARISON_LAYOUTS; k++) ck_csv_table_free(&read[i].tables[k]);

@@ -99,6 +99,48 @@ static const yaml_node_t *deepest(const ck_Document *document, const char *key, 
     return node;
 }
 
+static yaml_node_t *node_at(const ck_Document *document, int node) {
+    return yaml_document_get_node((yaml_document_t *)&document->yaml, node);
+}
+
+// The byte after a node: the mark of a block's end is that of what follows it, lines below.
+static size_t end_of(const ck_Document *document, const yaml_node_t *node) {
+    if (node->type == YAML_MAPPING_NODE && node->data.mapping.style != YAML_FLOW_MAPPING_STYLE &&
+        node->data.mapping.pairs.top > node->data.mapping.pairs.start)
+        return end_of(document, node_at(document, node->data.mapping.pairs.top[-1].value));
+    if (node->type == YAML_SEQUENCE_NODE && node->data.sequence.style != YAML_FLOW_SEQUENCE_STYLE &&
+        node->data.sequence.items.top > node->data.sequence.items.start)
+        return end_of(document, node_at(document, node->data.sequence.items.top[-1]));
+    return byte_at(document, node->end_mark);
+}
+
+// The key whose value a node is; NULL: it is an entry of a list.
+static const yaml_node_t *key_of(const ck_Document *document, const yaml_node_t *node) {
+    for (int i = 1; node_at(document, i); i++) {
+        const yaml_node_t *mapping = node_at(document, i);
+        if (mapping->type != YAML_MAPPING_NODE) continue;
+        for (yaml_node_pair_t *pair = mapping->data.mapping.pairs.start; pair < mapping->data.mapping.pairs.top; pair++)
+            if (node_at(document, pair->value) == node) return node_at(document, pair->key);
+    }
+    return NULL;
+}
+
+// Puts a value in place of a node's: of a key's, from its colon on. False when out of memory.
+static bool replace(ck_Document *document, const yaml_node_t *node, const char *value) {
+    const yaml_node_t *key = key_of(document, node);
+    size_t from = byte_at(document, node->start_mark), to = end_of(document, node);
+    if (key) {
+        size_t colon = byte_at(document, key->end_mark);
+        while (colon < from && document->text[colon] != ':') colon++;
+        if (colon < document->length && document->text[colon] == ':') from = colon + 1;
+    }
+    char *text;
+    if (asprintf(&text, "%s%s", key ? " " : "", value) < 0) return false;
+    const bool fits = splice(document, from, to > from ? to : from, text);
+    free(text);
+    return fits;
+}
+
 ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Error *error) {
     char key[200], *value = strndup(change->value, (size_t)change->value_length), *nested = NULL;
     const char *rest;
@@ -112,7 +154,7 @@ ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Err
     else if (!change->value_length)
         status = ck_fail(error, CK_BAD_INPUT, "%s: %s has no value; it must read @KEY=VALUE", document->path, key);
     else if (!*rest)
-        fits = fits && splice(document, byte_at(document, node->start_mark), byte_at(document, node->end_mark), value);
+        fits = fits && replace(document, node, value);
     else if (node->type != YAML_MAPPING_NODE || strchr(rest, '['))
         status = ck_document_fail(document, node, error, "there is no place for %s here", key);
     else if (fits) {
@@ -126,6 +168,19 @@ ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Err
     return fits || status ? status : ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
 }
 
+// A letter of a value as a name has it; 0: it is left out, and -1 parts what stands around it.
+static int plain_letter(char letter) {
+    if (letter == '>') return 'g';
+    if (letter == '<') return 'l';
+    if (strchr(CK_PLAIN_LETTERS, letter)) return letter;
+    return strchr("=, :[{", letter) ? -1 : 0;
+}
+
+// A name that does not fit is told by its end, which is a number of all of the word.
+static void shorten(char *name, size_t size, const char *word) {
+    snprintf(name + size - 10, 10, "-%08x", (unsigned)ck_hash(CK_HASH_START, word, strlen(word)));
+}
+
 char *ck_change_name(char *name, size_t size, const char *word) {
     ck_Change change;
     size_t used = 0;
@@ -135,15 +190,18 @@ char *ck_change_name(char *name, size_t size, const char *word) {
         int from = change.key_length;
         while (from > 0 && change.key[from - 1] != '.') from--;
         const int length = change.key_length + 1 + change.value_length;
-        if (used + 2 < size) name[used++] = '-';
+        bool is_parted = false;
+        if (used + 1 < size) name[used++] = '-';
         for (int i = from; i < length && used + 1 < size; i++) {
-            const char letter = change.key[i];
-            if (letter == '=')
-                name[used++] = '_';
-            else if (strchr(CK_PLAIN_LETTERS, letter))
-                name[used++] = letter;
+            const int letter = plain_letter(change.key[i]);
+            is_parted |= letter < 0;
+            if (letter <= 0) continue;
+            if (is_parted && name[used - 1] != '-' && used + 2 < size) name[used++] = '_';
+            name[used++] = (char)letter;
+            is_parted = false;
         }
         name[used] = 0;
     }
+    if (used + 1 == size) shorten(name, size, word);
     return name;
 }

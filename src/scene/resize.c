@@ -6,7 +6,9 @@
 // Segments of that many particles, share times as many; 0 where they are no whole number.
 static uint32_t scale_count(uint32_t count, double share) {
     const double segments = (count - 1.0) * share;
-    return fabs(segments - round(segments)) < 1e-9 * segments && segments >= 1 ? (uint32_t)round(segments) + 1 : 0;
+    const bool is_whole = fabs(segments - round(segments)) < 1e-9 * segments && segments >= 1;
+    // more than a scene may have is refused by who counts particles
+    return is_whole ? (uint32_t)fmin(round(segments), CK_SCENE_MAX_PARTICLES) + 1 : 0;
 }
 
 static bool has_number(char *const *pins, uint32_t count) {

@@ -63,7 +63,7 @@ static ck_Status resize(ck_Scene *scene, ck_Error *error) {
 
 // A changed scene is another one, and its name says which: by what is changed after the name, where that is.
 static bool rename_changed(ck_SceneFile *file, const char *path) {
-    char name[200], suffix[120];
+    char name[200], suffix[CK_SCENE_SUFFIX];
     ck_Change change;
     int from = 0;
     for (int place = 0; ck_change_next(path, &place, &change);)

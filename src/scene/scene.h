@@ -11,6 +11,9 @@
 // The most particles, and the most springs, that a scene may ask for.
 #define CK_SCENE_MAX_PARTICLES 4000000
 
+// The most that a changed scene's name is longer, the zero at its end included.
+#define CK_SCENE_SUFFIX 120
+
 typedef struct ck_SceneCloth {
     uint32_t rows, columns;
     double spacing, mass; // m between neighbours; kg of the whole cloth, 0: the material's

@@ -103,6 +103,7 @@ static ck_Status read_run(const Reader *reader, yaml_node_t *node) {
 }
 
 static ck_Status read_series(const Reader *reader, yaml_node_t *node) {
+    reader->study->has_series = true;
     static const char *const words[] = {"none", "csv", "gzip"};
     int series = 0;
     ck_Status status = read_word(reader, node, "series", words, 3, &series);
@@ -138,6 +139,10 @@ static ck_Status read_settings(const Reader *reader, yaml_node_t *node) {
         }
         for (yaml_node_pair_t *pair = keys->data.mapping.pairs.start; all && pair < keys->data.mapping.pairs.top;
              pair++) {
+            if (node_at(reader, pair->key)->type != YAML_SCALAR_NODE) {
+                status = ck_document_fail(&study->document, keys, reader->error, "%s", wrong);
+                break;
+            }
             char *more = NULL, *value = ck_value_text(&study->document, node_at(reader, pair->value));
             if (!value || asprintf(&more, "%s@settings.%s.%s=%s", all, (char *)name->data.scalar.value,
                                    (char *)node_at(reader, pair->key)->data.scalar.value, value) < 0)
@@ -185,6 +190,24 @@ static ck_Status read_axis(const Reader *reader, yaml_node_t *node, ck_StudyAxis
     return status;
 }
 
+// The axis read last must have keys of its own, and leave no more points than a study has.
+static ck_Status check_axis(const Reader *reader, const yaml_node_t *node) {
+    const ck_StudyFile *study = reader->study;
+    const ck_StudyAxis *last = &study->axes[study->axis_count - 1];
+    double points = 1;
+    for (int i = 0; i < study->axis_count; i++) {
+        points *= study->axes[i].value_count;
+        for (int k = 0; k < study->axes[i].key_count; k++)
+            for (int m = 0; m < last->key_count; m++)
+                if ((&study->axes[i] != last || k != m) && !strcmp(study->axes[i].keys[k], last->keys[m]))
+                    return ck_document_fail(&study->document, node, reader->error, "%s is swept twice; keep one",
+                                            last->keys[m]);
+    }
+    if (points <= CK_STUDY_MOST_POINTS) return CK_OK;
+    return ck_document_fail(&study->document, node, reader->error, "it has %.0f points by now; a study has at most %d",
+                            points, CK_STUDY_MOST_POINTS);
+}
+
 static ck_Status read_sweep(const Reader *reader, yaml_node_t *node) {
     ck_StudyFile *study = reader->study;
     if (node->type != YAML_SEQUENCE_NODE)
@@ -195,7 +218,9 @@ static ck_Status read_sweep(const Reader *reader, yaml_node_t *node) {
     ck_Status status = CK_OK;
     for (int i = 0; i < entries_of(node) && !status; i++) {
         study->axis_count = i + 1;
-        status = read_axis(reader, node_at(reader, node->data.sequence.items.start[i]), &study->axes[i]);
+        const yaml_node_t *axis = node_at(reader, node->data.sequence.items.start[i]);
+        status = read_axis(reader, (yaml_node_t *)axis, &study->axes[i]);
+        if (!status) status = check_axis(reader, axis);
     }
     return status;
 }
@@ -210,7 +235,7 @@ static ck_Status read_chart(const Reader *reader, yaml_node_t *node, ck_StudyCha
     for (yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top && !status;
          pair++) {
         yaml_node_t *key = node_at(reader, pair->key), *value = node_at(reader, pair->value);
-        const char *name = (const char *)key->data.scalar.value;
+        const char *name = key->type == YAML_SCALAR_NODE ? (const char *)key->data.scalar.value : "";
         if (!strcmp(name, "x"))
             status = read_text(reader, value, "x", &chart->x);
         else if (!strcmp(name, "metric"))
@@ -282,6 +307,10 @@ static ck_Status check(const Reader *reader, yaml_node_t *root) {
     if (study->run == CK_STUDY_CONFORM && (study->scene_count || study->axis_count))
         return ck_document_fail(document, root, reader->error,
                                 "conform has scenes of its own; leave out scenes and sweep");
+    if (study->run != CK_STUDY_COMPARE && (study->repeats >= 0 || study->has_series))
+        return ck_document_fail(document, root, reader->error,
+                                "repeats and series are of compare; %s takes them in options, as [--repeats, 3]",
+                                ck_study_runs[study->run]);
     for (int i = 0; i < study->chart_count; i++) {
         bool is_swept = false;
         for (int k = 0; k < study->axis_count; k++)
@@ -295,7 +324,7 @@ static ck_Status check(const Reader *reader, yaml_node_t *root) {
 }
 
 ck_Status ck_study_file_load(ck_StudyFile *study, const char *path, ck_Error *error) {
-    *study = (ck_StudyFile){.repeats = 1};
+    *study = (ck_StudyFile){.repeats = -1};
     const Reader reader = {study, error};
     bool seen[KEYS] = {false};
     ck_Status status = ck_document_load(&study->document, path, &kind, error);

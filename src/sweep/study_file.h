@@ -7,6 +7,9 @@
 
 #include <stdbool.h>
 
+// The most points, and the most cases.
+#define CK_STUDY_MOST_POINTS 10000000
+
 // What is run at each point.
 typedef enum ck_StudyRun {
     CK_STUDY_COMPARE,
@@ -48,8 +51,9 @@ typedef struct ck_StudyFile {
     ck_StudyAxis *axes;
     int axis_count;
     char *settings; // of engines at every point, as changes of a scene: see change.h
-    int repeats;    // timed
+    int repeats;    // timed; below 0: it is not said
     ck_StudySeries series;
+    bool has_series; // it is said
     ck_StudyChart *charts;
     int chart_count;
 } ck_StudyFile;

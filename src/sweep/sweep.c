@@ -23,6 +23,10 @@ static const bool is_by_engine[CK_STUDY_RUNS] = {[CK_STUDY_COMPARE] = true,
                                                  [CK_STUDY_NEEDS] = true,
                                                  [CK_STUDY_CONFORM] = true};
 
+static uint64_t hash_text(uint64_t value, const char *text) {
+    return ck_hash(value, text ? text : "", text ? strlen(text) + 1 : 1);
+}
+
 int ck_sweep_key_count(const ck_StudyFile *file) {
     int count = 0;
     for (int i = 0; i < file->axis_count; i++) count += file->axes[i].key_count;
@@ -81,6 +85,18 @@ void ck_sweep_word(const ck_Sweep *sweep, int point, char word[CK_SWEEP_WORD]) {
         used = add_changes(word, used, &file->axes[i], index_on(file, point, i));
 }
 
+void ck_sweep_name(const ck_Sweep *sweep, int point, char name[CK_SWEEP_NAME]) {
+    char changes[CK_SWEEP_WORD], suffix[CK_SCENE_SUFFIX];
+    size_t used = 0;
+    const ck_StudyFile *file = sweep->options->file;
+    *changes = 0;
+    for (int i = 0; i < file->axis_count && used < sizeof changes; i++)
+        used = add_changes(changes, used, &file->axes[i], index_on(file, point, i));
+    ck_change_name(suffix, sizeof suffix, changes);
+    snprintf(name, CK_SWEEP_NAME, "%.79s%s", file->scene_count ? sweep->names[ck_sweep_scene(sweep, point)] : "none",
+             suffix);
+}
+
 int ck_sweep_point(const ck_Sweep *sweep, int index, int *engine) {
     *engine = -1;
     if (index < sweep->truth_count) return sweep->truth_at[index];
@@ -90,10 +106,6 @@ int ck_sweep_point(const ck_Sweep *sweep, int index, int *engine) {
 
 char *ck_sweep_folder(const char *directory) {
     return ck_path_join(directory, "study");
-}
-
-static uint64_t hash_text(uint64_t value, const char *text) {
-    return ck_hash(value, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
 // Loads a scene with changes, as a check, and hashes it with the files that it names.
@@ -112,9 +124,9 @@ static ck_Status check_word(const char *word, uint64_t *hash, bool *solves, char
     return status;
 }
 
-static bool names_file(const char *key) {
+static bool names_file(const char *key, const char *value) {
     const size_t length = strlen(key);
-    return !strcmp(key, "file") || (length > 5 && !strcmp(key + length - 5, ".file"));
+    return !strcmp(key, "file") || (length > 5 && !strcmp(key + length - 5, ".file")) || strstr(value, "file:");
 }
 
 // One key after the other at its values, the others as the scene has them: what a file holds belongs to the case.
@@ -125,7 +137,8 @@ static ck_Status check_axes(ck_Sweep *sweep, int scene, ck_Error *error) {
     for (int i = 0; i < file->axis_count && !status; i++) {
         const ck_StudyAxis *axis = &file->axes[i];
         bool has_file = false;
-        for (int k = 0; k < axis->key_count; k++) has_file |= names_file(axis->keys[k]);
+        for (int k = 0; k < axis->key_count * axis->value_count; k++)
+            has_file |= names_file(axis->keys[k % axis->key_count], axis->values[k]);
         const int stride = has_file || axis->value_count <= MOST_VALUES ? 1 : axis->value_count / MOST_VALUES;
         // with few points each is loaded as a whole: there keys may need one another
         if (!has_file && sweep->point_count <= MOST_CHECKED) continue;
@@ -140,15 +153,19 @@ static ck_Status check_axes(ck_Sweep *sweep, int scene, ck_Error *error) {
     return status;
 }
 
-// Springs, frames, and the substeps that stiffness asks for.
-static ck_Status find_work(const char *word, double *work, ck_Error *error) {
+// Springs, frames, and the substeps that stiffness asks for; and a hash of what a truth depends on, files and all.
+static ck_Status find_work(const char *word, double *work, uint64_t *hash, ck_Error *error) {
     ck_Scene scene;
     ck_Model model = {0};
     double frequency = 0;
     ck_Status status = ck_scene_load(&scene, word, error);
     if (!status) status = ck_engines_check(&scene, error);
     if (!status) status = ck_model_build(&model, &scene, error);
+    ck_Error why = {0};
+    if (!status && !model.starts_settled) status = ck_truth_check(&model, &why);
+    if (*why.message) ck_fail(error, status, "%s: %s", word, why.message);
     if (!status) ck_stability_frequency(&model, &frequency);
+    if (!status) *hash = hash_text(ck_model_hash(&model), model.truth);
     if (!status) *work = (model.spring_count + 1.0) * model.frame_count * fmax(1, frequency * model.step);
     ck_model_free(&model);
     ck_scene_free(&scene);
@@ -176,32 +193,48 @@ static int compare_truths(const void *a, const void *b) {
     return one->point - other->point;
 }
 
-// All that a truth depends on: a setting of an engine is none of it.
+// All that a truth depends on: of points that were loaded the model, else what is changed. A setting of an engine is
+// none of it.
 static uint64_t hash_truth(const ck_Sweep *sweep, int point) {
     const ck_StudyFile *file = sweep->options->file;
-    uint64_t hash = hash_text(sweep->scene_hashes[ck_sweep_scene(sweep, point)], "truth");
+    const ck_Limits *limits = &sweep->options->compare->limits;
+    const double numbers[] = {limits->seconds, (double)limits->memory_bytes};
+    uint64_t hash = hash_text(ck_hash(CK_HASH_START, numbers, sizeof numbers), sweep->build);
+    if (sweep->point_hashes[point]) return ck_hash(hash, &sweep->point_hashes[point], sizeof(uint64_t));
+    hash = ck_hash(hash, &sweep->scene_hashes[ck_sweep_scene(sweep, point)], sizeof(uint64_t));
     for (int k = 0; k < ck_sweep_key_count(file); k++) {
         if (!strncmp(ck_sweep_key(file, k), "settings.", 9)) continue;
         hash = hash_text(hash_text(hash, ck_sweep_key(file, k)), ck_sweep_value(sweep, point, k));
     }
-    hash = hash_text(hash, ck_machine_build());
-    return ck_hash(hash, &sweep->options->compare->limits.seconds, sizeof(double));
+    return hash;
 }
 
-// An engine from outside is what its files hold: those that the words which name it are, or end in.
+// What a file holds, where a word is the name of one.
+static uint64_t hash_file(uint64_t hash, const char *word) {
+    struct stat about;
+    char *bytes = NULL;
+    size_t size;
+    if (!*word || stat(word, &about) || !S_ISREG(about.st_mode)) return hash;
+    if (!ck_file_read(&bytes, &size, word, NULL)) hash = ck_hash(hash, bytes, size);
+    free(bytes);
+    return hash;
+}
+
+// An engine from outside is what the files hold that the words which name it are.
 static uint64_t hash_outside(uint64_t hash, const ck_Outside *outside) {
     char *words = outside && outside->arguments ? strdup(outside->arguments) : NULL, *rest = words;
     hash = hash_text(hash, words);
-    for (char *word; words && (word = strsep(&rest, " =\t'\""));) {
-        struct stat about;
-        char *bytes = NULL;
-        size_t size;
-        if (!*word || stat(word, &about) || !S_ISREG(about.st_mode)) continue;
-        if (!ck_file_read(&bytes, &size, word, NULL)) hash = ck_hash(hash, bytes, size);
-        free(bytes);
-    }
+    for (char *word; words && (word = strsep(&rest, " =\t'\""));) hash = hash_file(hash, word);
     free(words);
     return hash;
+}
+
+// Program and commit; where that does not tell what is built, what the program is made of.
+static void find_build(ck_Sweep *sweep) {
+    const char *build = ck_machine_build();
+    const bool is_known = !strstr(build, "-dirty") && !strstr(build, "unknown");
+    snprintf(sweep->build, sizeof sweep->build, "%s %016llx", build,
+             (unsigned long long)(is_known ? 0 : hash_file(CK_HASH_START, "/proc/self/exe")));
 }
 
 static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
@@ -216,8 +249,10 @@ static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
         hash = hash_text(hash_text(hash, compare->engines[i]->name), ck_engine_version(compare->engines[i]));
         hash = ck_hash(hash, &sweep->engine_hashes[i], sizeof sweep->engine_hashes[i]);
     }
-    for (int i = 0; i < file->option_count; i++) hash = hash_text(hash, file->options[i]);
-    hash = hash_text(hash_text(hash, file->settings), ck_machine_build());
+    hash = ck_hash(hash, &sweep->point_hashes[point], sizeof sweep->point_hashes[point]);
+    for (int i = 0; i < file->option_count; i++) hash = hash_file(hash_text(hash, file->options[i]), file->options[i]);
+    for (int i = 0; i < options->word_count; i++) hash = hash_text(hash, options->words[i]);
+    hash = hash_text(hash_text(hash, file->settings), sweep->build);
     const double numbers[] = {file->run,
                               compare->repeats,
                               file->series,
@@ -255,9 +290,9 @@ static ck_Status find_truths(ck_Sweep *sweep, const bool *solves, ck_Error *erro
 
 static ck_Status find_keys(ck_Sweep *sweep, ck_Error *error) {
     const double cases = sweep->truth_count + (double)sweep->point_count * sweep->engine_count;
-    if (cases > CK_SWEEP_MOST)
+    if (cases > CK_STUDY_MOST_POINTS)
         return ck_fail(error, CK_BAD_INPUT, "%s: it has %.0f cases; a study has at most %d",
-                       sweep->options->file->document.path, cases, CK_SWEEP_MOST);
+                       sweep->options->file->document.path, cases, CK_STUDY_MOST_POINTS);
     sweep->case_count = (int)cases;
     sweep->keys = malloc((size_t)sweep->case_count * sizeof *sweep->keys);
     if (!sweep->keys) return ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -270,6 +305,60 @@ static ck_Status find_keys(ck_Sweep *sweep, ck_Error *error) {
     return CK_OK;
 }
 
+typedef struct PointName {
+    uint64_t hash;
+    int point;
+} PointName;
+
+static int compare_names(const void *a, const void *b) {
+    const PointName *one = a, *other = b;
+    if (one->hash != other->hash) return one->hash < other->hash ? -1 : 1;
+    return one->point - other->point;
+}
+
+// Two points of one name would be one in the CSVs.
+static ck_Status check_names(const ck_Sweep *sweep, ck_Error *error) {
+    PointName *names = malloc(((size_t)sweep->point_count + 1) * sizeof *names);
+    char name[CK_SWEEP_NAME];
+    ck_Status status = names ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < sweep->point_count && names; i++) {
+        ck_sweep_name(sweep, i, name);
+        names[i] = (PointName){hash_text(CK_HASH_START, name), i};
+    }
+    if (names) qsort(names, (size_t)sweep->point_count, sizeof *names, compare_names);
+    for (int i = 1; i < sweep->point_count && !status; i++) {
+        if (names[i].hash != names[i - 1].hash) continue;
+        ck_sweep_name(sweep, names[i].point, name);
+        status = ck_fail(error, CK_BAD_INPUT,
+                         "%s: its points %d and %d are both named %s; give no scene and no value twice, and scenes "
+                         "names of their own (SCENE@name=NAME)",
+                         sweep->options->file->document.path, names[i - 1].point + 1, names[i].point + 1, name);
+    }
+    free(names);
+    return status;
+}
+
+// A word that does not fit would be another scene.
+static ck_Status check_length(const ck_Sweep *sweep, ck_Error *error) {
+    const ck_StudyFile *file = sweep->options->file;
+    size_t longest = file->settings ? strlen(file->settings) + 100 : 0, most = 0;
+    for (int i = 0; i < file->scene_count; i++) most = fmax(most, strlen(sweep->options->paths[i]));
+    for (int i = 0; i < file->axis_count; i++) {
+        size_t axis = 0;
+        for (int v = 0; v < file->axes[i].value_count; v++) {
+            size_t one = 0;
+            for (int k = 0; k < file->axes[i].key_count; k++)
+                one +=
+                    strlen(file->axes[i].keys[k]) + strlen(file->axes[i].values[v * file->axes[i].key_count + k]) + 2;
+            if (one > axis) axis = one;
+        }
+        longest += axis;
+    }
+    if (longest + most < CK_SWEEP_WORD) return CK_OK;
+    return ck_fail(error, CK_BAD_INPUT, "%s: a point's changes take %zu letters, of at most %d", file->document.path,
+                   longest + most, CK_SWEEP_WORD);
+}
+
 static ck_Status check_points(ck_Sweep *sweep, ck_Error *error) {
     char word[CK_SWEEP_WORD];
     ck_Status status = CK_OK;
@@ -277,7 +366,7 @@ static ck_Status check_points(ck_Sweep *sweep, ck_Error *error) {
         sweep->work[i] = 1;
         if (sweep->point_count > MOST_CHECKED || !sweep->options->file->scene_count) continue;
         ck_sweep_word(sweep, i, word);
-        status = find_work(word, &sweep->work[i], error);
+        status = find_work(word, &sweep->work[i], &sweep->point_hashes[i], error);
         if (i % 100 == 99) ck_progress_show("looking at %d of %d points", i + 1, sweep->point_count);
     }
     ck_progress_clear();
@@ -288,9 +377,9 @@ static ck_Status count_points(ck_Sweep *sweep, ck_Error *error) {
     const ck_StudyFile *file = sweep->options->file;
     double points = file->scene_count ? file->scene_count : 1;
     for (int i = 0; i < file->axis_count; i++) points *= file->axes[i].value_count;
-    if (points > CK_SWEEP_MOST)
+    if (points > CK_STUDY_MOST_POINTS)
         return ck_fail(error, CK_BAD_INPUT, "%s: it has %.0f points; a study has at most %d", file->document.path,
-                       points, CK_SWEEP_MOST);
+                       points, CK_STUDY_MOST_POINTS);
     sweep->point_count = (int)points;
     return CK_OK;
 }
@@ -304,8 +393,10 @@ ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Er
     sweep->scene_hashes = calloc((size_t)file->scene_count + 1, sizeof *sweep->scene_hashes);
     sweep->work = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->work);
     sweep->names = calloc((size_t)file->scene_count + 1, sizeof *sweep->names);
+    sweep->point_hashes = calloc((size_t)sweep->point_count + 1, sizeof *sweep->point_hashes);
+    find_build(sweep);
     bool *solves = calloc((size_t)file->scene_count + 1, sizeof *solves);
-    if (!sweep->scene_hashes || !sweep->work || !sweep->names || !solves)
+    if (!sweep->scene_hashes || !sweep->work || !sweep->names || !sweep->point_hashes || !solves)
         status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     for (int i = 0; i < file->scene_count && !status; i++) {
         status = check_word(options->paths[i], &sweep->scene_hashes[i], &solves[i], &sweep->names[i], error);
@@ -313,6 +404,8 @@ ck_Status ck_sweep_create(ck_Sweep *sweep, const ck_SweepOptions *options, ck_Er
     }
     for (int i = 0; i < options->compare->engine_count; i++)
         sweep->engine_hashes[i] = hash_outside(CK_HASH_START, options->compare->engines[i]->outside);
+    if (!status) status = check_length(sweep, error);
+    if (!status) status = check_names(sweep, error);
     if (!status) status = check_points(sweep, error);
     if (!status) status = find_truths(sweep, solves, error);
     if (!status) status = find_keys(sweep, error);
@@ -324,6 +417,7 @@ void ck_sweep_free(ck_Sweep *sweep) {
     for (int i = 0; sweep->names && i < sweep->options->file->scene_count; i++) free(sweep->names[i]);
     free(sweep->names);
     free(sweep->scene_hashes);
+    free(sweep->point_hashes);
     free(sweep->truth_of);
     free(sweep->truth_at);
     free(sweep->keys);

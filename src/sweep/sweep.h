@@ -7,9 +7,6 @@
 
 #include <stdio.h>
 
-// The most points, and the most cases.
-#define CK_SWEEP_MOST 10000000
-
 // A command line to be run in a child: its exit status.
 typedef int ck_SweepCommand(int count, char **words);
 
@@ -19,12 +16,14 @@ typedef struct ck_SweepOptions {
     const ck_CompareOptions *compare; // engines, limits, repeats, seed
     const char *directory;            // OUT
     ck_SweepCommand *command;         // for what is not compare
-    int jobs;                         // worker processes
-    int shard, shards;                // only every shards-th case, from the shard-th, counted from 1; 0: all
-    double case_limit;                // s of wall time of a case
-    double timeout;                   // s of wall time after which no case is begun; 0: none
-    bool is_by_point;                 // all engines of a point are one case
-    bool is_part;                     // others run cases, too: it does not wait for theirs
+    char *const *words;               // options of it beside those of the file, [word_count]
+    int word_count;
+    int jobs;          // worker processes
+    int shard, shards; // only every shards-th case, from the shard-th, counted from 1; 0: all
+    double case_limit; // s of wall time of a case
+    double timeout;    // s of wall time after which no case is begun; 0: none
+    bool is_by_point;  // all engines of a point are one case
+    bool is_part;      // others run cases, too: it does not wait for theirs
 } ck_SweepOptions;
 
 typedef struct ck_Sweep {
@@ -32,7 +31,9 @@ typedef struct ck_Sweep {
     int point_count, engine_count; // of a point; engine_count 1 where all engines are one case
     int truth_count, case_count;   // truths first, then engines of the first point, of the second …
     bool is_by_engine;
-    char **names; // of the scenes
+    char **names;           // of the scenes
+    char build[120];        // of the program
+    uint64_t *point_hashes; // [points] of those that were loaded: of all that is in their models; else 0
     uint64_t *scene_hashes;
     uint64_t engine_hashes[CK_COMPARISON_MAX_ENGINES]; // of what those from outside are
     int *truth_of;                                     // [points] the case of its truth; −1: it needs none
@@ -51,6 +52,10 @@ void ck_sweep_free(ck_Sweep *sweep);
 // The word that names a point's scene with its changes; see change.h.
 #define CK_SWEEP_WORD 8192
 void ck_sweep_word(const ck_Sweep *sweep, int point, char word[CK_SWEEP_WORD]);
+
+// The name that the scene has there.
+#define CK_SWEEP_NAME 200
+void ck_sweep_name(const ck_Sweep *sweep, int point, char name[CK_SWEEP_NAME]);
 
 // The value of a key at a point, as YAML; NULL: of another axis. Keys are counted over all axes.
 int ck_sweep_key_count(const ck_StudyFile *file);

@@ -9,13 +9,11 @@
 #include "tables.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <ftw.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <zlib.h>
 
 // What a case comes to: its own row of study.csv, and rows of others.
 typedef struct Case {
@@ -89,21 +87,31 @@ static void refuse(Case *one, const char *reason) {
         if (*letter == '\n') *letter = ' ';
 }
 
-// Why a truth is not to be had, kept beside those that are: DIRECTORY/KEY.none.
-static char *none_path(const Case *one, const char *cache, int truth) {
-    char *path;
-    return asprintf(&path, "%s/%016llx.none", cache, (unsigned long long)one->sweep->keys[truth]) < 0 ? NULL : path;
+// Why a truth is not to be had: OUT/study/none/KEY.
+static char *none_folder(const Case *one) {
+    char *study = ck_sweep_folder(one->sweep->options->directory), *folder = study ? ck_path_join(study, "none") : NULL;
+    free(study);
+    return folder;
 }
 
-static ck_Status keep_none(const Case *one, const char *cache, const char *kind, ck_Error *error) {
-    char name[40];
-    ck_WholeFile whole;
-    snprintf(name, sizeof name, "%016llx.none", (unsigned long long)one->sweep->keys[one->index]);
-    ck_Status status = ck_whole_file_open(&whole, cache, name, error);
+static ck_Status keep_none(const Case *one, const char *kind, ck_Error *error) {
+    char name[40], *folder = none_folder(one);
+    ck_WholeFile whole = {0};
+    snprintf(name, sizeof name, "%016llx", (unsigned long long)one->sweep->keys[one->index]);
+    ck_Status status =
+        folder ? ck_whole_file_open(&whole, folder, name, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) fputs(kind, whole.file);
     if (!status) status = ck_whole_file_close(&whole, error);
     ck_whole_file_discard(&whole);
+    free(folder);
     return status;
+}
+
+static char *none_path(const Case *one, int truth) {
+    char *folder = none_folder(one), *path = NULL;
+    if (folder && asprintf(&path, "%s/%016llx", folder, (unsigned long long)one->sweep->keys[truth]) < 0) path = NULL;
+    free(folder);
+    return path;
 }
 
 static ck_Status run_truth(Case *one, ck_Comparison *comparison, const char *cache, ck_Error *error) {
@@ -113,13 +121,13 @@ static ck_Status run_truth(Case *one, ck_Comparison *comparison, const char *cac
     snprintf(one->reason, sizeof one->reason, "%s", comparison->truth.kind);
     if (comparison->truth.path_count || !comparison->truth.form) return CK_OK;
     refuse(one, comparison->truth.kind);
-    return keep_none(one, cache, comparison->truth.kind, error);
+    return keep_none(one, comparison->truth.kind, error);
 }
 
 // The truth that its own case has found, or why there is none.
 static ck_Status take_truth(const Case *one, ck_Comparison *comparison, const char *cache, ck_Error *error) {
     const int truth = one->sweep->truth_of[one->point];
-    char *path = truth >= 0 ? none_path(one, cache, truth) : NULL, *kind = NULL;
+    char *path = truth >= 0 ? none_path(one, truth) : NULL, *kind = NULL;
     size_t size;
     ck_Status status = CK_OK;
     if (path && !access(path, F_OK)) {
@@ -133,31 +141,6 @@ static ck_Status take_truth(const Case *one, ck_Comparison *comparison, const ch
     return status;
 }
 
-// OUT/series/SCENE.ENGINE.csv.gz.
-static ck_Status write_series(const Case *one, const char *rows, ck_Error *error) {
-    char name[400], *folder = ck_path_join(one->sweep->options->directory, "series");
-    ck_WholeFile whole = {0};
-    snprintf(name, sizeof name, "%s.%s.csv.gz", one->scene, engine_name(one));
-    ck_Status status =
-        folder ? ck_whole_file_open(&whole, folder, name, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    const int file = status ? -1 : dup(fileno(whole.file));
-    gzFile packed = file >= 0 ? gzdopen(file, "wb6") : NULL;
-    if (!status && !packed) status = ck_fail(error, CK_IO, "%s/%s: %s", folder, name, strerror(errno));
-    const ck_Layout *layout = &ck_layouts[CK_SERIES];
-    for (int i = 0; packed && i < ck_layout_column_count(layout); i++)
-        gzprintf(packed, "%s%s", i ? "," : "", layout->columns[i].name);
-    if (packed) {
-        gzputs(packed, "\n");
-        bool has_failed = gzwrite(packed, rows, (unsigned)strlen(rows)) != (int)strlen(rows);
-        has_failed |= gzclose(packed) != Z_OK;
-        if (has_failed) status = ck_fail(error, CK_IO, "%s/%s: cannot be written", folder, name);
-    }
-    if (!status) status = ck_whole_file_close(&whole, error);
-    ck_whole_file_discard(&whole);
-    free(folder);
-    return status;
-}
-
 static ck_Status add_rows(const Case *one, const ck_Comparison *comparison, const ck_CompareOptions *options,
                           ck_Error *error) {
     char *rows[CK_COMPARISON_LAYOUTS];
@@ -167,10 +150,8 @@ static ck_Status add_rows(const Case *one, const ck_Comparison *comparison, cons
                                  : one->engine            ? CK_SERIES_ROWS_ENGINES
                                                           : CK_SERIES_ROWS_ALL;
     ck_Status status = ck_tables_text(rows, comparison, options, wanted, error);
-    if (!status && series == CK_SERIES_GZIP) status = write_series(one, rows[CK_SERIES], error);
     for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
-        if (!status && rows[i] && (i != CK_SERIES || series == CK_SERIES_CSV))
-            add_section(one->out, ck_layouts[i].file, rows[i], strlen(rows[i]));
+        if (!status && rows[i]) add_section(one->out, ck_layouts[i].file, rows[i], strlen(rows[i]));
         free(rows[i]);
     }
     return status;
@@ -201,8 +182,11 @@ static ck_Status run_compare(Case *one, ck_Error *error) {
     ck_Status status =
         cache ? ck_comparison_load(&comparison, one->word, &why) : ck_fail(&why, CK_NO_MEMORY, "out of memory");
     ck_text_shell(path, sizeof path, one->word);
-    if (one->engine >= 0)
-        snprintf(one->command, sizeof one->command, "clothcheck run %s --engine %s", path, engine_name(one));
+    if (one->engine >= 0) {
+        const ck_Outside *outside = one->sweep->options->compare->engines[one->engine]->outside;
+        snprintf(one->command, sizeof one->command, "clothcheck run %s %s%s", path, outside ? "" : "--engine ",
+                 outside ? outside->arguments : engine_name(one));
+    }
     if (cache && !status) {
         snprintf(one->scene, sizeof one->scene, "%s", comparison.model.name);
         status = one->engine < 0 ? run_truth(one, &comparison, cache, &why) : run_engine(one, &comparison, cache, &why);
@@ -240,29 +224,41 @@ static void run_line(void *context) {
     if (result > line->most_result) _exit(result);
 }
 
-// A command line of the case, but for where to.
+// Adds a word to what is run, and to the command that repeats it.
+//   typed  in its place there; NULL: the word, quoted; "": nothing
+static void add_word(Line *line, Case *one, char *word, const char *typed) {
+    const size_t used = strlen(one->command), size = sizeof one->command;
+    line->words[line->count++] = word;
+    if (used + 2 >= size || (typed && !*typed)) return;
+    one->command[used] = ' ';
+    one->command[used + 1] = 0;
+    if (typed)
+        snprintf(one->command + used + 1, size - used - 1, "%s", typed);
+    else
+        ck_text_shell(one->command + used + 1, size - used - 1, word);
+}
+
+// A command line of the case, but for where to. Engines come first: some options are of the one that is asked for.
 static bool make_line(Line *line, Case *one) {
     const ck_SweepOptions *options = one->sweep->options;
     const ck_StudyFile *file = options->file;
-    size_t used;
-    if (2 * options->compare->engine_count + file->option_count + 12 > MOST_WORDS) return false;
+    if (2 * options->compare->engine_count + file->option_count + options->word_count + 12 > MOST_WORDS) return false;
     *line = (Line){.command = options->command, .most_result = file->run == CK_STUDY_CONFORM};
-    line->words[line->count++] = (char *)ck_study_runs[file->run];
-    for (int i = 0; i < file->option_count; i++) line->words[line->count++] = file->options[i];
+    snprintf(one->command, sizeof one->command, "clothcheck");
+    add_word(line, one, (char *)ck_study_runs[file->run], NULL);
     for (int i = 0; i < options->compare->engine_count; i++) {
         if (one->sweep->is_by_engine && i != one->engine) continue;
-        line->words[line->count++] = "-e";
-        line->words[line->count++] = (char *)options->compare->engines[i]->name;
+        // one from outside is told by its own words, and here known by its name
+        const ck_Outside *outside = options->compare->engines[i]->outside;
+        add_word(line, one, "-e", outside ? "" : NULL);
+        add_word(line, one, (char *)options->compare->engines[i]->name, outside ? outside->arguments : NULL);
     }
-    if (*one->word) line->words[line->count++] = one->word;
-    used = (size_t)snprintf(one->command, sizeof one->command, "clothcheck");
-    for (int i = 0; i < line->count && used + 2 < sizeof one->command; i++) {
-        one->command[used++] = ' ';
-        used += ck_text_shell(one->command + used, sizeof one->command - used, line->words[i]);
-    }
-    line->words[line->count++] = "--jobs";
-    line->words[line->count++] = "1";
-    if (file->run != CK_STUDY_CONFORM) line->words[line->count++] = "--force";
+    for (int i = 0; i < file->option_count; i++) add_word(line, one, file->options[i], NULL);
+    for (int i = 0; i < options->word_count; i++) add_word(line, one, options->words[i], NULL);
+    if (*one->word) add_word(line, one, one->word, NULL);
+    add_word(line, one, "--jobs", "");
+    add_word(line, one, "1", "");
+    if (file->run != CK_STUDY_CONFORM) add_word(line, one, "--force", "");
     return true;
 }
 

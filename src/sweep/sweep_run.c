@@ -7,7 +7,9 @@
 #include "store.h"
 #include "tables.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <ftw.h>
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -186,10 +188,35 @@ static ck_Status tell_machine(const char *folder, ck_Error *error) {
     return status;
 }
 
+static int remove_entry(const char *path, const struct stat *about, int type, struct FTW *place) {
+    (void)about, (void)type, (void)place;
+    return remove(path);
+}
+
+// What processes of this host that were killed have left: folders of work, and files without a case.
+static void sweep_up(const char *folder) {
+    DIR *directory = opendir(folder);
+    const size_t length = strlen(ck_host());
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        const char *name = entry->d_name, *ending = strrchr(name, '.');
+        if (strncmp(name, ck_host(), length) || name[length] != '.' || !ending) continue;
+        const int process = atoi(name + length + 1);
+        struct stat about;
+        char *path = ck_path_join(folder, name);
+        const bool is_gone = process > 0 && kill(process, 0) && errno == ESRCH;
+        const bool is_left =
+            !strcmp(ending, ".work") || (!strcmp(ending, ".cases") && path && !stat(path, &about) && !about.st_size);
+        if (path && is_gone && is_left) nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+        free(path);
+    }
+    if (directory) closedir(directory);
+}
+
 static ck_Status start(Run *run, ck_Board *board, ck_Error *error) {
     if (!run->folder || !run->shared) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     const int failed = ck_path_make(run->folder);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", run->folder, strerror(failed));
+    sweep_up(run->folder);
     ck_Status status = tell_machine(run->folder, error);
     return status ? status : ck_board_open(board, run->folder, run->sweep->study, error);
 }

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <zlib.h>
 
 // The CSVs that are being written: of each layout that any case has rows of.
 typedef struct Results {
@@ -117,8 +118,34 @@ static ck_Status take_host(void *context, int layout, const char *rows, size_t s
     return CK_OK;
 }
 
+// A case's series as OUT/series/SCENE.ENGINE.csv.gz, by the names in its first row.
+static ck_Status pack_series(const Results *results, const char *rows, size_t size) {
+    char name[400], *folder = ck_path_join(results->sweep->options->directory, "series");
+    ck_WholeFile whole = {0};
+    const int scene = (int)strcspn(rows, ","), engine = (int)strcspn(rows + scene + 1, ",");
+    snprintf(name, sizeof name, "%.*s.%.*s.csv.gz", scene, rows, engine, rows + scene + 1);
+    ck_Status status = folder ? ck_whole_file_open(&whole, folder, name, NULL) : CK_NO_MEMORY;
+    const int file = status ? -1 : dup(fileno(whole.file));
+    gzFile packed = file >= 0 ? gzdopen(file, "wb6") : NULL;
+    const ck_Layout *layout = &ck_layouts[CK_SERIES];
+    bool has_failed = !packed;
+    for (int i = 0; packed && i < ck_layout_column_count(layout); i++)
+        has_failed |= gzprintf(packed, "%s%s", i ? "," : "", layout->columns[i].name) <= 0;
+    if (packed) {
+        has_failed |= gzputs(packed, "\n") < 0 || gzwrite(packed, rows, (unsigned)size) != (int)size;
+        has_failed |= gzclose(packed) != Z_OK;
+    }
+    if (!status && has_failed) status = CK_IO;
+    if (!status) status = ck_whole_file_close(&whole, NULL);
+    ck_whole_file_discard(&whole);
+    free(folder);
+    return status;
+}
+
 static ck_Status take_rows(void *context, int layout, const char *rows, size_t size) {
     Results *results = context;
+    if (layout == CK_SERIES && results->sweep->options->file->series == CK_SERIES_GZIP)
+        return pack_series(results, rows, size);
     if (!results->files[layout].file) {
         ck_Status status = begin_file(results, layout, NULL);
         if (status) return status;
@@ -201,13 +228,17 @@ static void add_chart(ck_Csv *csv, const char *x, const char *metric, const char
     ck_csv_text(csv, of);
 }
 
+static bool has_charts(const ck_Sweep *sweep) {
+    return sweep->options->file->run == CK_STUDY_COMPARE || sweep->options->file->run == CK_STUDY_PRECISION;
+}
+
 // What the file asks for, or what is off against each swept number.
 static ck_Status write_charts(const ck_Sweep *sweep, ck_Error *error) {
     static const char *const metrics[2][2] = {{"position_rms", "cost"}, {"cost_to_1_percent", "floor"}};
     const ck_StudyFile *file = sweep->options->file;
     ck_Csv csv = {0};
     const bool is_precision = file->run == CK_STUDY_PRECISION;
-    if (file->run != CK_STUDY_COMPARE && !is_precision) return CK_OK;
+    if (!has_charts(sweep)) return CK_OK;
     ck_Status status = ck_csv_open(&csv, sweep->options->directory, &ck_layouts[CK_STUDY_CHARTS], error);
     for (int i = 0; i < file->chart_count && !status; i++)
         add_chart(&csv, file->charts[i].x, file->charts[i].metric, file->charts[i].of);
@@ -228,6 +259,19 @@ static ck_Status check_whole(const ck_Sweep *sweep, const ck_Store *store, ck_Er
                    sweep->options->directory, missing, sweep->case_count);
 }
 
+// Results of another study that was there before: two together would be neither.
+static void remove_others(const Results *results, const bool *written) {
+    for (int i = 0; i < CK_REPORT_LAYOUTS; i++) {
+        char *path = ck_path_join(results->sweep->options->directory, ck_layouts[i].file), line[4096] = "";
+        FILE *file = path && !written[i] ? fopen(path, "re") : NULL;
+        const bool is_study =
+            file && fgets(line, sizeof line, file) && (strstr(line, ",of_scene") || i == CK_STUDY_CHARTS);
+        if (file) fclose(file);
+        if (is_study) unlink(path);
+        free(path);
+    }
+}
+
 ck_Status ck_sweep_write(const ck_Sweep *sweep, ck_Error *error) {
     const char *directory = sweep->options->directory;
     char *folder = ck_sweep_folder(directory);
@@ -238,10 +282,13 @@ ck_Status ck_sweep_write(const ck_Sweep *sweep, ck_Error *error) {
     if (!status) status = add_cases(&results, &store, error);
     if (!status) status = write_charts(sweep, error);
     if (!status) status = write_machines(directory, folder, error);
+    bool written[CK_REPORT_LAYOUTS] = {[CK_STUDY_CHARTS] = has_charts(sweep)};
     for (int i = 0; i < CK_REPORT_LAYOUTS; i++) {
+        written[i] |= results.files[i].file != NULL;
         if (results.files[i].file && !status) status = ck_whole_file_close(&results.files[i], error);
         ck_whole_file_discard(&results.files[i]);
     }
+    if (!status) remove_others(&results, written);
     free(results.columns);
     ck_store_free(&store);
     free(folder);

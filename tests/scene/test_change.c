@@ -51,7 +51,7 @@ static void test_values(void **state) {
     assert_int_equal(scene.setting_count, 1);
     assert_string_equal(scene.settings[0].engine, "native-verlet");
     assert_near("substeps", scene.settings[0].value, 8, 0);
-    assert_true(!strncmp(file->name, "sheet-stiffness_250-gravity_00-1-", 33));
+    assert_true(!strncmp(file->name, "sheet-stiffness_250-gravity_0_0_-1-", 35));
     ck_scene_free(&scene);
 }
 
@@ -75,6 +75,34 @@ static void test_breaks(void **state) {
     }
 }
 
+// Values on lines of their own are replaced with these lines, and a key without a value gets one.
+static void test_blocks(void **state) {
+    (void)state;
+    static const char text[] =
+        "name: b\nrope:\n  particles: 5\n  spacing: 0.1\n  mass: 1\npins:\n- first\n- last\n"
+        "colliders: # none of these\n  - plane:\n      point: [0, -1, 0]\n      normal: [0, 1, 0]\n"
+        "\n  - sphere: {center: [0, -9, 0], radius: 0.5}\n# a comment\n"
+        "time:\n  duration: 1\n  fps: 60\ndrag:\n";
+    ck_Scene scene;
+    ck_Error error = {0};
+    if (load(&scene, text,
+             "@pins=[last]@drag=3@colliders[0]={sphere: {center: [1, 2, 3], radius: 4}}@rope={particles: "
+             "9, spacing: 1, mass: 2}",
+             &error))
+        fail_msg("%s", error.message);
+    assert_int_equal(scene.file->pins_count, 1);
+    assert_string_equal(scene.file->pins[0], "last");
+    assert_near("drag", scene.file->drag, 3, 0);
+    assert_int_equal(scene.file->colliders_count, 2);
+    assert_near("radius", scene.file->colliders[0].sphere->radius, 4, 0);
+    assert_int_equal(scene.file->rope->particles, 9);
+    ck_scene_free(&scene);
+    if (load(&scene, text, "@drag=1@colliders=[]", &error)) fail_msg("%s", error.message);
+    assert_int_equal(scene.file->colliders_count, 0);
+    assert_near("what stands behind it", scene.file->time.duration, 1, 0);
+    ck_scene_free(&scene);
+}
+
 static void test_names(void **state) {
     (void)state;
     static const struct {
@@ -82,7 +110,7 @@ static void test_names(void **state) {
     } cases[] = {{"", "sheet"},
                  {"@drag=2@springs.stiffness=1e+02", "sheet-drag_2-stiffness_1e02"},
                  {"@drag=2@name=other", "other"},
-                 {"@drag=2@name=other@force=[0, 0, 1]@cloth.mass=2", "other-force_001-mass_2"},
+                 {"@drag=2@name=other@force=[0, 0, 1]@cloth.mass=2", "other-force_0_0_1-mass_2"},
                  // a value may have an @ of its own
                  {"@about=a@b@drag=1", "sheet-about_ab-drag_1"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -140,7 +168,7 @@ static void test_resolution(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_breaks),
-                                       cmocka_unit_test(test_names), cmocka_unit_test(test_errors),
-                                       cmocka_unit_test(test_resolution)};
+                                       cmocka_unit_test(test_blocks), cmocka_unit_test(test_names),
+                                       cmocka_unit_test(test_errors), cmocka_unit_test(test_resolution)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

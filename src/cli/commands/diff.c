@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Values are told apart where they differ by more than the truths' uncertainties, and by more than rounding.
@@ -14,22 +15,56 @@ typedef struct Result {
     ck_CsvTable runs, metrics;
 } Result;
 
+// A table's rows in the order of some columns, so that one is found among many.
+typedef struct Index {
+    const ck_CsvTable *table;
+    const char *const *columns;
+    int *rows; // [row_count]
+} Index;
+
+static int compare_rows(const ck_CsvTable *one, int row, const ck_CsvTable *other, int with,
+                        const char *const *columns) {
+    int order = 0;
+    for (; *columns && !order; columns++)
+        order = strcmp(ck_csv_text_of(one, row, *columns), ck_csv_text_of(other, with, *columns));
+    return order;
+}
+
+static int compare_indexed(const void *a, const void *b, void *context) {
+    const Index *index = context;
+    const int one = *(const int *)a, other = *(const int *)b,
+              order = compare_rows(index->table, one, index->table, other, index->columns);
+    return order ? order : one - other;
+}
+
+static bool index_table(Index *index, const ck_CsvTable *table, const char *const *columns) {
+    *index = (Index){table, columns, malloc(sizeof *index->rows * ((size_t)table->row_count + 1))};
+    for (int i = 0; i < table->row_count && index->rows; i++) index->rows[i] = i;
+    if (index->rows) qsort_r(index->rows, (size_t)table->row_count, sizeof *index->rows, compare_indexed, index);
+    return index->rows != NULL;
+}
+
+// The first row that has the same in the index's columns; negative: none.
+static int find_row(const Index *index, const ck_CsvTable *table, int row) {
+    int low = 0, high = index->table->row_count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (compare_rows(index->table, index->rows[middle], table, row, index->columns) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const bool is_there =
+        low < index->table->row_count && !compare_rows(index->table, index->rows[low], table, row, index->columns);
+    return is_there ? index->rows[low] : -1;
+}
+
 typedef struct Diff {
     Result old, new;
+    Index old_runs, new_runs, old_metrics;
     ck_Answer *answer;
     int moved, changed, faster, slower, only_old, only_new;
 } Diff;
-
-// The row of other that has the same in some columns; negative: none.
-static int find_row(const ck_CsvTable *other, const ck_CsvTable *table, int row, const char *const *columns) {
-    for (int i = 0; i < other->row_count; i++) {
-        bool is_same = true;
-        for (const char *const *column = columns; *column && is_same; column++)
-            is_same = !strcmp(ck_csv_text_of(table, row, *column), ck_csv_text_of(other, i, *column));
-        if (is_same) return i;
-    }
-    return -1;
-}
 
 static const char *const run_key[] = {"scene", "engine", NULL};
 static const char *const metric_key[] = {"scene", "engine", "metric", NULL};
@@ -44,7 +79,7 @@ static ck_Status read_result(Result *result, const char *directory, ck_Error *er
 static void show_statuses(Diff *diff) {
     const ck_CsvTable *old = &diff->old.runs, *new = &diff->new.runs;
     for (int i = 0; i < new->row_count; i++) {
-        int before = find_row(old, new, i, run_key);
+        int before = find_row(&diff->old_runs, new, i);
         const char *was = before < 0 ? "" : ck_csv_text_of(old, before, "status"),
                    *is = ck_csv_text_of(new, i, "status");
         diff->only_new += before < 0;
@@ -53,7 +88,7 @@ static void show_statuses(Diff *diff) {
         ck_answer_line(diff->answer, CK_ANSWER_NOTE, "%s %s: %s, was %s: %s", ck_csv_text_of(new, i, "scene"),
                        ck_csv_text_of(new, i, "engine"), is, was, ck_csv_text_of(new, i, "reason"));
     }
-    for (int i = 0; i < old->row_count; i++) diff->only_old += find_row(new, old, i, run_key) < 0;
+    for (int i = 0; i < old->row_count; i++) diff->only_old += find_row(&diff->new_runs, old, i) < 0;
 }
 
 static bool has_moved(double was, double is, double uncertainty) {
@@ -73,7 +108,7 @@ static void show_metrics(Diff *diff) {
                                               {NULL, NULL, 0, NULL}};
     const ck_CsvTable *old = &diff->old.metrics, *new = &diff->new.metrics;
     for (int i = 0; i < new->row_count; i++) {
-        int before = find_row(old, new, i, metric_key);
+        int before = find_row(&diff->old_metrics, new, i);
         if (before < 0) continue;
         double was = ck_csv_number_of(old, before, "value"), is = ck_csv_number_of(new, i, "value");
         double uncertainty =
@@ -96,7 +131,7 @@ static void show_costs(Diff *diff) {
         {"cpu_is_s", "is, s", 12, "%.4g"}, {"ratio", "ratio", 8, "%.3f"},   {NULL, NULL, 0, NULL}};
     const ck_CsvTable *old = &diff->old.runs, *new = &diff->new.runs;
     for (int i = 0; i < new->row_count; i++) {
-        int before = find_row(old, new, i, run_key);
+        int before = find_row(&diff->old_runs, new, i);
         if (before < 0 || ck_csv_number_of(old, before, "simulated_s") != ck_csv_number_of(new, i, "simulated_s"))
             continue;
         bool is_faster = ck_csv_number_of(new, i, "cpu_high_s") < ck_csv_number_of(old, before, "cpu_low_s");
@@ -137,7 +172,14 @@ static int run(const ck_Command *command, int argc, char **argv) {
                          arguments.word_count);
     if (!status) status = read_result(&diff.old, arguments.words[0], &error);
     if (!status) status = read_result(&diff.new, arguments.words[1], &error);
+    const bool is_indexed = !status && index_table(&diff.old_runs, &diff.old.runs, run_key) &&
+                            index_table(&diff.new_runs, &diff.new.runs, run_key) &&
+                            index_table(&diff.old_metrics, &diff.old.metrics, metric_key);
+    if (!status && !is_indexed) status = ck_fail(&error, CK_NO_MEMORY, "out of memory");
     if (!status) show(&diff);
+    free(diff.old_runs.rows);
+    free(diff.new_runs.rows);
+    free(diff.old_metrics.rows);
     Result *const results[] = {&diff.old, &diff.new};
     for (int i = 0; i < 2; i++) {
         ck_csv_table_free(&results[i]->runs);

@@ -55,12 +55,11 @@ static const Kind *find_study(const char *directory, char *question, size_t size
 static bool is_scene(const char *question) {
     unsigned long long wanted;
     const char *hash = strstr(question, "\t(scene "), *place = strstr(question, CK_JOURNAL_PLACE);
-    char *text = NULL;
-    size_t size;
+    ck_Scene scene = {0};
     if (!hash || !place || sscanf(hash, "\t(scene %16llx", &wanted) != 1) return false;
-    ck_Status status = ck_file_read(&text, &size, place + strlen(CK_JOURNAL_PLACE), NULL);
-    bool is_same = !status && ck_hash(CK_HASH_START, text, size) == wanted;
-    free(text);
+    ck_Status status = ck_scene_load(&scene, place + strlen(CK_JOURNAL_PLACE), NULL);
+    bool is_same = !status && ck_hash(CK_HASH_START, scene.document.text, scene.document.length) == wanted;
+    ck_scene_free(&scene);
     return is_same;
 }
 
@@ -93,6 +92,13 @@ static ck_Status check_parts(const ck_Arguments *arguments, ck_Error *error) {
     return CK_OK;
 }
 
+static bool has_cases(const char *part) {
+    char *folder = ck_sweep_folder(part);
+    const bool has = folder && !access(folder, F_OK);
+    free(folder);
+    return has;
+}
+
 // Parts that are no journal of a study of one scene: cases of a study of many, or a comparison's CSVs.
 static int join(ck_Arguments *arguments, bool is_study) {
     ck_Error error = {0};
@@ -108,13 +114,6 @@ static int join(ck_Arguments *arguments, bool is_study) {
         ck_answer_line(&arguments->answer, CK_ANSWER_NEXT, "clothcheck report %s", out);
     }
     return ck_command_end(arguments, status, &error);
-}
-
-static bool has_cases(const char *part) {
-    char *folder = ck_sweep_folder(part);
-    const bool has = folder && !access(folder, F_OK);
-    free(folder);
-    return has;
 }
 
 static int run(const ck_Command *command, int argc, char **argv) {

@@ -86,7 +86,7 @@ static ck_Status open_study(Study *study, ck_Error *error) {
         if (!study->out) return ck_fail(error, CK_NO_MEMORY, "out of memory");
         arguments->out = study->out;
     }
-    arguments->options.repeats = study->sweeps.file.repeats;
+    arguments->options.repeats = study->sweeps.file.repeats < 0 ? 1 : study->sweeps.file.repeats;
     snprintf(study->sweeps.again, sizeof study->sweeps.again, "clothcheck study %s --out %s", arguments->words[0],
              arguments->out);
     study->sweeps.arguments = arguments;
@@ -163,9 +163,24 @@ static ck_Status use_slurm(Study *study, ck_Error *error) {
     return status;
 }
 
+// Of each study.
+#define SLURM_DONE "slurm_done-%016llx"
+
+// One that is submitted by hand begins anew.
+static void forget_array(const Study *study) {
+    char *path;
+    if (asprintf(&path, "%s/study/" SLURM_DONE, study->arguments.out, (unsigned long long)study->sweeps.sweep.study) <
+        0)
+        return;
+    unlink(path);
+    free(path);
+}
+
 // How far the array before came, so that one that gets nowhere is not submitted for ever.
 static ck_Status submit_again(Study *study, int done, ck_Error *error) {
-    char *folder = ck_sweep_folder(study->arguments.out), *path = folder ? ck_path_join(folder, "slurm_done") : NULL;
+    char *folder = ck_sweep_folder(study->arguments.out), name[60];
+    snprintf(name, sizeof name, SLURM_DONE, (unsigned long long)study->sweeps.sweep.study);
+    char *path = folder ? ck_path_join(folder, name) : NULL;
     char *text = NULL;
     size_t size;
     const int before = path && !ck_file_read(&text, &size, path, NULL) ? atoi(text) : -1;
@@ -175,7 +190,7 @@ static ck_Status submit_again(Study *study, int done, ck_Error *error) {
         status = ck_fail(
             error, CK_IO, "%s: %d of %d cases are missing, and the last array did none of them; see %s/slurm-*.log",
             study->sweeps.file.name, study->sweeps.sweep.case_count - done, study->sweeps.sweep.case_count, folder);
-    if (!status) status = ck_whole_file_open(&whole, folder, "slurm_done", error);
+    if (!status) status = ck_whole_file_open(&whole, folder, name, error);
     if (!status) fprintf(whole.file, "%d\n", done);
     if (!status) status = ck_whole_file_close(&whole, error);
     ck_whole_file_discard(&whole);
@@ -189,6 +204,7 @@ static ck_Status submit_again(Study *study, int done, ck_Error *error) {
 static ck_Status run_study(Study *study, ck_Error *error) {
     ck_Arguments *arguments = &study->arguments;
     ck_SweepProgress progress;
+    if (arguments->uses_slurm && !arguments->is_dry) forget_array(study);
     if (arguments->uses_slurm) return use_slurm(study, error);
     if (arguments->is_dry) {
         ck_answer_line(&arguments->answer, CK_ANSWER_SAYS, "%s: %d points, %d engines, %d cases, %d of them truths",
