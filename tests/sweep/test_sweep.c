@@ -45,6 +45,12 @@ static const struct {
     {"half a chart", "study: s\nscenes: [a]\ncharts: [{x: drag}]\n", "a chart needs x, a key, and metric"},
     {"too many repeats", "study: s\nscenes: [a]\nrepeats: 100\n", "repeats is 100; it must be a whole number from 0"},
     {"scenes of conform", "study: s\nrun: conform\nscenes: [a]\n", "conform has scenes of its own"},
+    {"a key swept twice", "study: s\nscenes: [a]\nsweep: [{drag: [1]}, {drag: [2]}]\n",
+     "drag is swept twice; keep one"},
+    {"too many points", "study: s\nscenes: [a]\nsweep: [{drag: {seeds: 1000000}}, {noise.seed: {seeds: 1000000}}]\n",
+     "it has 1000000000000 points by now; a study has at most 10000000"},
+    {"repeats of another command", "study: s\nscenes: [a]\nrun: tune\nrepeats: 2\n",
+     "repeats and series are of compare"},
     {"empty", "", ":1:1: is empty; a study needs study, its name, and scenes"},
 };
 
@@ -328,6 +334,107 @@ static void test_report(void **state) {
     free(page);
 }
 
+// Writes a study of the sheet and runs it; what it says is in the output.
+static int run_text(const char *text, const char *out, const char *options) {
+    char line[3000];
+    char *path = fixture_file(text);
+    snprintf(line, sizeof line, "study %s --out %s/%s %s", path, fixture_directory, out, options);
+    const int result = fixture_program(line);
+    unlink(path);
+    free(path);
+    return result;
+}
+
+static void write_there(const char *name, const char *text) {
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", fixture_directory, name);
+    FILE *file = fopen(path, "w");
+    fputs(text, file);
+    fclose(file);
+}
+
+// Values of which two would have one name in the CSVs.
+static void test_names(void **state) {
+    (void)state;
+#define OF_SHEET "study: s\nscenes: [" STUDIES "/sheet.yaml]\nengines: [still]\n"
+    static const char *const colliding[] = {OF_SHEET "sweep: [{drag: [1, 1]}]\n",
+                                            "study: s\nscenes: [" STUDIES "/sheet.yaml, " STUDIES
+                                            "/sheet.yaml]\nengines: [still]\n",
+                                            OF_SHEET "sweep: [{about: [a?, a!]}]\n"};
+    static const char *const apart[] = {OF_SHEET "sweep: [{gravity: [[0, -1, 10], [0, -11, 0]]}]\n",
+                                        OF_SHEET "sweep: [{pins: [['x > 0.3'], ['x < 0.3']]}]\n"};
+    for (size_t i = 0; i < sizeof colliding / sizeof *colliding; i++) {
+        assert_int_equal(run_text(colliding[i], "colliding", ""), 2);
+        fixture_assert_output("are both named sheet");
+    }
+    for (size_t i = 0; i < sizeof apart / sizeof *apart; i++) {
+        char out[20];
+        snprintf(out, sizeof out, "apart%zu", i);
+        if (run_text(apart[i], out, "")) fail_msg("%s", fixture_read("output"));
+    }
+}
+
+static double first_sag(const char *out) {
+    ck_CsvTable table;
+    char *directory = directory_of(out);
+    double sag = NAN;
+    assert_int_equal(ck_csv_table_read(&table, directory, &ck_layouts[CK_METRICS], NULL), CK_OK);
+    for (int i = 0; i < table.row_count && isnan(sag); i++)
+        if (!strcmp(ck_csv_text_of(&table, i, "metric"), "sag")) sag = ck_csv_number_of(&table, i, "value");
+    ck_csv_table_free(&table);
+    free(directory);
+    return sag;
+}
+
+// What a case depends on beside its words: files that they name. With another one it is run again.
+static void test_files(void **state) {
+    (void)state;
+    static const char head[] = "o a\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 ", rest[] = "\nf 1 2 3 4\n";
+    char mesh[200], text[600];
+    write_there("cloth.yaml", "name: m\nmesh: {file: other.obj, mass: 0.1}\nsprings: {stiffness: 50}\npins: [0, 1]\n"
+                              "gravity: [0, -9.81, 0]\ndrag: 2\ntime: {duration: 0.2, fps: 60}\n");
+    snprintf(text, sizeof text,
+             "study: files\nscenes: [%s/cloth.yaml]\nengines: [native-verlet]\nrepeats: 0\n"
+             "sweep: [{mesh: [{file: quad.obj, mass: 0.1}]}]\n",
+             fixture_directory);
+    double sags[2];
+    snprintf(mesh, sizeof mesh, "%s1%s", head, rest);
+    write_there("other.obj", mesh);
+    for (int i = 0; i < 2; i++) {
+        snprintf(mesh, sizeof mesh, "%s%d%s", head, 1 + i, rest);
+        write_there("quad.obj", mesh);
+        if (run_text(text, "files", "")) fail_msg("%s", fixture_read("output"));
+        sags[i] = first_sag("files");
+    }
+    assert_true(fabs(sags[1] - sags[0]) > 1e-3);
+}
+
+// A folder holds the results of one study, and no two studies take it from each other by force.
+static void test_one_folder(void **state) {
+    (void)state;
+    assert_int_equal(run_text(OF_SHEET "sweep: [{drag: [1, 2]}]\n", "folder", ""), 0);
+    char *there = fixture_read("folder/metrics.csv");
+    assert_non_null(there);
+    free(there);
+    assert_int_equal(run_text("study: t\nrun: tune\nscenes: [" STUDIES "/sheet.yaml]\nengines: [native-verlet]\n"
+                              "options: [--error, 0.5]\n",
+                              "folder", ""),
+                     0);
+    assert_null(fixture_read("folder/metrics.csv"));
+    there = fixture_read("folder/tune.csv");
+    assert_non_null(there);
+    free(there);
+    assert_int_equal(run_text(OF_SHEET, "folder", "--kept --force"), 2);
+    fixture_assert_output("--kept writes what is there, and --force removes it");
+    // limits reach what is no comparison, and a case that they ended is run again with others
+    static const char tuned[] = "study: t\nrun: tune\nscenes: [" STUDIES "/sheet.yaml]\nengines: [native-verlet]\n"
+                                "options: [--error, 0.01]\n";
+    assert_int_equal(run_text(tuned, "limited", "--case-limit 1e-3"), 0);
+    fixture_assert_output("1 refused");
+    assert_int_equal(run_text(tuned, "limited", "--case-limit 600"), 0);
+    fixture_assert_output("1 ok");
+}
+
 static int count_cheapest(void) {
     char line[400], number[20] = "";
     snprintf(line, sizeof line, "report %s/hosts", fixture_directory);
@@ -406,9 +513,42 @@ static void test_several_scenes(void **state) {
         "done; diff -q three/replays/bounce.replay threes/replays/bounce.replay",
         d);
     assert_int_equal(system(line), 0);
-    snprintf(line, sizeof line, "merge %s/again %s/three1 %s/three1", d, d, d);
+    static const struct {
+        const char *parts, *said;
+    } wrong[] = {{"%s/again %s/three1 %s/three1", "both have pendulum"},
+                 {"%s/again %s/three2 %s/three1", "is part 2 of 2, and stands where part 1 of 2 should"},
+                 {"%s/again %s/three1 %s/tuned", "are not parts of one command"},
+                 {"%s/three %s/three1 %s/three2", "holds results, which would be lost"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char parts[600];
+        snprintf(parts, sizeof parts, wrong[i].parts, d, d, d);
+        snprintf(line, sizeof line, "merge %s", parts);
+        assert_int_equal(fixture_program(line), 2);
+        fixture_assert_output(wrong[i].said);
+    }
+    snprintf(line, sizeof line, "merge %s/again %s/three1", d, d);
     assert_int_equal(fixture_program(line), 2);
-    fixture_assert_output("both have pendulum");
+    fixture_assert_output("is part 1 of 2, and stands where part 1 of 1 should");
+    // a way that a single scene may be told in, and what several cannot be
+    snprintf(line, sizeof line, "tune rope_hanging bounce -e native-verlet --set substeps=40 --error 0.5 --out %s/set",
+             d);
+    assert_int_equal(fixture_program(line), 0);
+    fixture_assert_output("2 ok");
+    snprintf(line, sizeof line, "tune rope_hanging bounce --out %s/none", d);
+    assert_int_equal(fixture_program(line), 2);
+    fixture_assert_output("tune needs one --engine NAME");
+    snprintf(line, sizeof line, "tune rope_hanging bounce -e native-verlet --append --out %s/set", d);
+    assert_int_equal(fixture_program(line), 2);
+    // a part of one scene with changes
+    for (int i = 1; i <= 2; i++) {
+        snprintf(line, sizeof line,
+                 "precision pendulum@drag=2@truth=trajectory -e native-bars -e ode-direct -r 0 --shard %d/2 --out "
+                 "%s/change%d",
+                 i, d, i);
+        if (fixture_program(line)) fail_msg("%s", fixture_read("output"));
+    }
+    snprintf(line, sizeof line, "merge %s/changed %s/change1 %s/change2", d, d, d);
+    if (fixture_program(line)) fail_msg("%s", fixture_read("output"));
 }
 
 // Results of other commands are not lost, nor those of a study to other commands.
@@ -449,14 +589,16 @@ static void test_slurm(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bad_studies),     cmocka_unit_test(test_values),
-        cmocka_unit_test(test_whole),           cmocka_unit_test(test_killed),
-        cmocka_unit_test(test_shared),          cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_damage),          cmocka_unit_test(test_more_values),
-        cmocka_unit_test(test_series),          cmocka_unit_test(test_shipped_study),
-        cmocka_unit_test(test_report),          cmocka_unit_test(test_folders),
-        cmocka_unit_test(test_unlike_machines), cmocka_unit_test(test_scripts),
-        cmocka_unit_test(test_several_scenes),  cmocka_unit_test(test_slurm),
+        cmocka_unit_test(test_bad_studies), cmocka_unit_test(test_values),
+        cmocka_unit_test(test_whole),       cmocka_unit_test(test_killed),
+        cmocka_unit_test(test_shared),      cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_damage),      cmocka_unit_test(test_more_values),
+        cmocka_unit_test(test_series),      cmocka_unit_test(test_shipped_study),
+        cmocka_unit_test(test_report),      cmocka_unit_test(test_folders),
+        cmocka_unit_test(test_names),       cmocka_unit_test(test_files),
+        cmocka_unit_test(test_one_folder),  cmocka_unit_test(test_unlike_machines),
+        cmocka_unit_test(test_scripts),     cmocka_unit_test(test_several_scenes),
+        cmocka_unit_test(test_slurm),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

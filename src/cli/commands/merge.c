@@ -104,7 +104,13 @@ static int join(ck_Arguments *arguments, bool is_study) {
     ck_Error error = {0};
     char **parts = arguments->words + 1, *out = arguments->words[0];
     const int count = arguments->word_count - 1;
-    ck_Status status = is_study ? ck_sweep_merge(out, parts, count, &error) : ck_join(out, parts, count, &error);
+    ck_Status status = CK_OK;
+    for (int i = 0; i < count && !status; i++)
+        if (has_cases(parts[i]) != is_study)
+            status = ck_fail(&error, CK_BAD_INPUT, "%s and %s are not parts of one command", parts[0], parts[i]);
+    if (!status && ck_join_is_part(out) && (!is_study || !has_cases(out)))
+        status = ck_fail(&error, CK_BAD_INPUT, "%s: holds results, which would be lost; give another OUT", out);
+    if (!status) status = is_study ? ck_sweep_merge(out, parts, count, &error) : ck_join(out, parts, count, &error);
     if (!status && is_study) {
         ck_answer_line(&arguments->answer, CK_ANSWER_SAYS, "%s: has the cases of all parts", out);
         ck_answer_line(&arguments->answer, CK_ANSWER_NEXT,
