@@ -12,7 +12,8 @@ do for [p = 0:panels - 1] {
 	unset logscale
 	set format xy '%g'
 	if (STATS_min > 0 && STATS_max > 8*STATS_min) { set logscale x }
-	if (of eq 'error' || of eq 'cost') { set logscale y; set format y '10^{%L}' }
+	stats data using ($4 == p ? $3 : NaN) skip 1 prefix 'Y' nooutput
+	if (of eq 'error' || of eq 'cost' || (Y_min > 0 && Y_max > 20*Y_min)) { set logscale y; set format y '10^{%L}' }
 	set xlabel key noenhanced
 	label = of eq 'error' ? metric.', distance to the truth' : metric eq 'cost' ? 'CPU, ms per simulated second' : of eq 'cost' ? metric.', s of CPU' : metric
 	set ylabel label noenhanced

@@ -204,14 +204,13 @@ ck_Status ck_sweeps_open(ck_Sweeps *sweeps, ck_Error *error) {
     const int jobs = arguments->options.jobs, cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
     // what is timed is not run side by side
     const bool is_timed = sweeps->file.run == CK_STUDY_PRECISION || sweeps->file.run == CK_STUDY_NEEDS;
+    const int workers = is_timed || cores < 1 ? 1 : cores;
     sweeps->options = (ck_SweepOptions){.file = &sweeps->file,
                                         .paths = sweeps->paths,
                                         .compare = &arguments->options,
                                         .directory = arguments->out,
                                         .command = run_words,
-                                        .jobs = jobs                    ? jobs
-                                                : is_timed || cores < 1 ? 1
-                                                                        : cores,
+                                        .jobs = jobs ? jobs : workers,
                                         .shard = arguments->shard,
                                         .shards = arguments->shards,
                                         .case_limit = arguments->case_limit,
@@ -270,16 +269,12 @@ static ck_Status take_scenes(ck_Sweeps *sweeps, ck_StudyRun run, ck_Error *error
     file->document.path = strdup(ck_study_runs[run]);
     file->scenes = calloc((size_t)arguments->scene_count, sizeof *file->scenes);
     if (!file->name || !file->document.path || !file->scenes) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    size_t used = (size_t)snprintf(sweeps->again, sizeof sweeps->again, "clothcheck %s", file->name);
+    snprintf(sweeps->again, sizeof sweeps->again, "the same command, which goes on there");
     for (int i = 0; i < arguments->scene_count; i++) {
         file->scenes[i] = strdup(arguments->scenes[i]);
         if (!file->scenes[i]) return ck_fail(error, CK_NO_MEMORY, "out of memory");
         file->scene_count++;
-        if (used < sizeof sweeps->again)
-            used += (size_t)snprintf(sweeps->again + used, sizeof sweeps->again - used, " %s", arguments->scenes[i]);
     }
-    if (used < sizeof sweeps->again)
-        snprintf(sweeps->again + used, sizeof sweeps->again - used, " --out %s", arguments->out);
     sweeps->paths = arguments->scenes;
     ck_Status status = take_options(file, arguments->question, error);
     // of the ways to an answer the one that changes it

@@ -10,7 +10,7 @@ typedef struct ck_Sweeps {
     ck_StudyFile file;
     char *const *paths;            // of its scenes
     bool is_by_point;              // all engines of a point are one case
-    char again[CK_SWEEP_WORD];     // the command that goes on with it
+    char again[CK_SWEEP_WORD];     // what goes on with it
     char *words[4], limits[2][40]; // options of what is run
     ck_SweepOptions options;
     ck_Sweep sweep;

@@ -228,16 +228,21 @@ static void add_chart(ck_Csv *csv, const char *x, const char *metric, const char
     ck_csv_text(csv, of);
 }
 
+// What charts show where the file asks for none; NULL: there are none.
+static const char *const default_charts[CK_STUDY_RUNS][2] = {
+    [CK_STUDY_COMPARE] = {"position_rms", "cost"}, [CK_STUDY_PRECISION] = {"cost_to_1_percent", "floor"},
+    [CK_STUDY_TUNE] = {"cpu_s", "error"},          [CK_STUDY_STABILITY] = {"critical_step_s", "predicted_step_s"},
+    [CK_STUDY_REFINE] = {"sag", "stretch_max"},
+};
+
 static bool has_charts(const ck_Sweep *sweep) {
-    return sweep->options->file->run == CK_STUDY_COMPARE || sweep->options->file->run == CK_STUDY_PRECISION;
+    return default_charts[sweep->options->file->run][0] != NULL;
 }
 
 // What the file asks for, or what is off against each swept number.
 static ck_Status write_charts(const ck_Sweep *sweep, ck_Error *error) {
-    static const char *const metrics[2][2] = {{"position_rms", "cost"}, {"cost_to_1_percent", "floor"}};
     const ck_StudyFile *file = sweep->options->file;
     ck_Csv csv = {0};
-    const bool is_precision = file->run == CK_STUDY_PRECISION;
     if (!has_charts(sweep)) return CK_OK;
     ck_Status status = ck_csv_open(&csv, sweep->options->directory, &ck_layouts[CK_STUDY_CHARTS], error);
     for (int i = 0; i < file->chart_count && !status; i++)
@@ -245,7 +250,8 @@ static ck_Status write_charts(const ck_Sweep *sweep, ck_Error *error) {
     for (int i = 0; i < file->axis_count && !file->chart_count && !status; i++)
         for (int k = 0; k < file->axes[i].key_count; k++)
             for (int m = 0; m < 2 && is_numeric(&file->axes[i], k); m++)
-                add_chart(&csv, file->axes[i].keys[k], metrics[is_precision][m], "error");
+                add_chart(&csv, file->axes[i].keys[k], default_charts[file->run][m],
+                          file->run == CK_STUDY_REFINE ? "value" : "error");
     if (!status) status = ck_csv_close(&csv, error);
     ck_csv_discard(&csv);
     return status;

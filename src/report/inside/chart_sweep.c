@@ -22,14 +22,19 @@ typedef struct Point {
     double x, y;
 } Point;
 
-// Where a chart's numbers are: the CSV, and its columns of names and values. NULL in names: one number a row.
+// Where a chart's numbers are: the CSV, its column of names, and those of values; without names the metric is a column,
+// of rows that filters let through where there are any.
 typedef struct Source {
     ck_LayoutName layout;
     const char *names, *value, *error;
+    const char *filters[2][2]; // columns, and what they must be
 } Source;
-static const Source sources[] = {{CK_METRICS, "metric", "value", "error"},
-                                 {CK_PRECISION_SUMMARY, "quantity", "value", "value"},
-                                 {CK_RUNS, NULL, "cpu_median_s", "cpu_median_s"}};
+static const Source sources[] = {{CK_METRICS, .names = "metric", .value = "value", .error = "error"},
+                                 {CK_PRECISION_SUMMARY, .names = "quantity", .value = "value", .error = "value"},
+                                 {CK_REFINE_SUMMARY, .names = "metric", .value = "limit", .error = "order"},
+                                 {CK_TUNE, .filters = {{"role", "best"}}},
+                                 {CK_STABILITY, .filters = {{"case", "critical"}, {"damping", "scene"}}},
+                                 {CK_RUNS}};
 #define SOURCES ((int)(sizeof sources / sizeof *sources))
 
 // A chart that is drawn, of one scene.
@@ -57,20 +62,40 @@ static double number_at(const ck_CsvTable *table, int row, int column) {
     return *text && !*end ? number : NAN;
 }
 
-// Which of the CSVs has a chart's metric: "cost" are milliseconds of CPU per simulated second.
+// Cost is a metric of its own: milliseconds of CPU per simulated second.
+static bool is_own_cost(const Panel *panel) {
+    return panel->source->layout == CK_RUNS && !strcmp(panel->metric, "cost");
+}
+
+static bool has_column(const ck_Layout *layout, const char *name) {
+    for (int i = 0; i < ck_layout_column_count(layout); i++)
+        if (!strcmp(layout->columns[i].name, name)) return layout->columns[i].kind == CK_COLUMN_NUMBER;
+    return false;
+}
+
+// Which of the CSVs has a chart's metric.
 static bool find_source(Panel *panel, const ck_ReportData *data) {
     for (int i = 0; i < SOURCES; i++) {
         const ck_CsvTable *table = ck_report_table(data, sources[i].layout);
         if (!table || (panel->key = ck_csv_table_extra(table, panel->x)) < 0) continue;
-        bool has = !sources[i].names && !strcmp(panel->metric, "cost");
-        for (int row = 0; row < table->row_count && !has && sources[i].names; row++)
-            has = !strcmp(ck_csv_text_of(table, row, sources[i].names), panel->metric);
         panel->source = &sources[i];
         panel->table = table;
-        panel->is_cost = !strncmp(panel->metric, "cost", 4);
+        panel->is_cost = !strncmp(panel->metric, "cost", 4) || !strncmp(panel->metric, "cpu", 3);
+        bool has = !sources[i].names && (is_own_cost(panel) || has_column(table->layout, panel->metric));
+        for (int row = 0; row < table->row_count && !has && sources[i].names; row++)
+            has = !strcmp(ck_csv_text_of(table, row, sources[i].names), panel->metric);
         if (has) return true;
     }
     return false;
+}
+
+// True where a row is one of the chart's.
+static bool is_of(const Panel *panel, int row) {
+    const Source *source = panel->source;
+    if (source->names) return !strcmp(ck_csv_text_of(panel->table, row, source->names), panel->metric);
+    for (int i = 0; i < 2 && source->filters[i][0]; i++)
+        if (strcmp(ck_csv_text_of(panel->table, row, source->filters[i][0]), source->filters[i][1])) return false;
+    return true;
 }
 
 // True where a key goes with the chart's: each value of the one has one of the other.
@@ -109,10 +134,13 @@ static int find_panel(Sweep *sweep, const Panel *of, int first, const char *scen
 
 static double value_at(const Panel *panel, int row) {
     const ck_CsvTable *table = panel->table;
-    const bool is_error = !strcmp(panel->of, "error");
-    const double value = ck_csv_number_of(table, row, is_error ? panel->source->error : panel->source->value);
-    if (!panel->source->names) return 1e3 * value / ck_csv_number_of(table, row, "simulated_s");
-    if (!is_error || panel->is_cost) return value;
+    const bool is_error = !strcmp(panel->of, "error") && panel->source->layout == CK_METRICS;
+    if (is_own_cost(panel))
+        return 1e3 * ck_csv_number_of(table, row, "cpu_median_s") / ck_csv_number_of(table, row, "simulated_s");
+    if (!panel->source->names) return ck_csv_number_of(table, row, panel->metric);
+    const double value =
+        ck_csv_number_of(table, row, !strcmp(panel->of, "error") ? panel->source->error : panel->source->value);
+    if (!is_error) return value;
     return value > MOST_ERROR ? NAN : fmax(value, LEAST_ERROR);
 }
 
@@ -136,7 +164,7 @@ static bool gather(Sweep *sweep, Panel *of) {
     const int of_scene = ck_csv_table_extra(table, "of_scene");
     for (int row = 0; row < table->row_count; row++) {
         const char *engine = ck_csv_text_of(table, row, "engine");
-        if (of->source->names && strcmp(ck_csv_text_of(table, row, of->source->names), of->metric)) continue;
+        if (!is_of(of, row)) continue;
         const double x = number_at(table, row, of->key), y = value_at(of, row);
         if (!isfinite(x) || !isfinite(y) || !strcmp(engine, "still")) continue;
         const int panel = find_panel(sweep, of, first, ck_csv_table_text(table, row, of_scene));
@@ -189,7 +217,11 @@ int ck_chart_select_sweep(const ck_ReportData *data, const char *scene, FILE *ou
         // lines are told apart by an empty one
         if (i && is_next_line(&sweep, i)) fputc('\n', out);
         fprintf(out, "%s,%.9g,%.9g,%d,%s,%s,%s,%s\n", data->engines[point->engine], point->x, point->y, point->panel,
-                panel->x, panel->metric, panel->is_cost ? "cost" : panel->of, panel->scene);
+                panel->x, panel->metric,
+                panel->is_cost                        ? "cost"
+                : panel->source->layout == CK_METRICS ? panel->of
+                                                      : "value",
+                panel->scene);
     }
     free(sweep.points);
     return sweep.count;
