@@ -98,7 +98,7 @@ static ck_Status read_options(const Reader *reader, yaml_node_t *node) {
 static ck_Status read_run(const Reader *reader, yaml_node_t *node) {
     int run = 0;
     ck_Status status = read_word(reader, node, "run", ck_study_runs, CK_STUDY_RUNS, &run);
-    reader->study->run = (ck_StudyRun)run;
+    if (!status) reader->study->run = (ck_StudyRun)run;
     return status;
 }
 
@@ -107,7 +107,7 @@ static ck_Status read_series(const Reader *reader, yaml_node_t *node) {
     static const char *const words[] = {"none", "csv", "gzip"};
     int series = 0;
     ck_Status status = read_word(reader, node, "series", words, 3, &series);
-    reader->study->series = (ck_StudySeries)series;
+    if (!status) reader->study->series = (ck_StudySeries)series;
     return status;
 }
 
@@ -166,6 +166,7 @@ static ck_Status read_axis(const Reader *reader, yaml_node_t *node, ck_StudyAxis
     const int keys = (int)(node->data.mapping.pairs.top - node->data.mapping.pairs.start);
     axis->keys = calloc((size_t)keys, sizeof *axis->keys);
     if (!axis->keys) return fail_memory(reader);
+    axis->key_count = keys;
     ck_Status status = CK_OK;
     for (int k = 0; k < keys && !status; k++) {
         yaml_node_t *key = node_at(reader, node->data.mapping.pairs.start[k].key),
@@ -173,7 +174,6 @@ static ck_Status read_axis(const Reader *reader, yaml_node_t *node, ck_StudyAxis
         int count = 0;
         char **texts = NULL;
         status = read_text(reader, key, "a key of sweep", &axis->keys[k]);
-        axis->key_count = k + 1;
         if (!status) status = ck_values_read(document, values, axis->keys[k], &texts, &count, reader->error);
         if (!status && k && count != axis->value_count) {
             status = ck_document_fail(document, values, reader->error,
@@ -248,8 +248,9 @@ static ck_Status read_chart(const Reader *reader, yaml_node_t *node, ck_StudyCha
     }
     if (!status && !(chart->x && chart->metric))
         status = ck_document_fail(document, node, reader->error, "a chart needs x, a key, and metric");
+    if (status) return status;
     chart->of = strdup(ofs[of]);
-    return status ? status : chart->of ? CK_OK : fail_memory(reader);
+    return chart->of ? CK_OK : fail_memory(reader);
 }
 
 static ck_Status read_charts(const Reader *reader, yaml_node_t *node) {

@@ -86,9 +86,9 @@ static bool read_rule(const ck_Document *document, const yaml_node_t *node, Rule
         } else
             return false;
     }
-    rule->count = (int)count;
-    return has_range && has_count && count >= 1 && count <= CK_VALUES_MOST && floor(count) == count &&
-           (!rule->is_log || (rule->low > 0 && rule->high > 0));
+    const bool is_count = count >= 1 && count <= CK_VALUES_MOST && floor(count) == count;
+    if (is_count) rule->count = (int)count;
+    return has_range && has_count && is_count && (!rule->is_log || (rule->low > 0 && rule->high > 0));
 }
 
 static double rule_value(const Rule *rule, int index) {
