@@ -27,6 +27,9 @@ char *ck_path_part(const char *directory, const char *name);
 // Makes a directory and those above it. 0, or an errno.
 int ck_path_make(const char *directory);
 
+// Removes a file, or a directory with all that is in it. What cannot be removed stays.
+void ck_path_remove(const char *path);
+
 // The directory of what came with the program, which has scenes/ and reports/: share/clothcheck beside the bin/ that it
 // is installed in, else its source tree. False where there is none.
 bool ck_path_data(char *out, size_t size);

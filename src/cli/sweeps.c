@@ -5,7 +5,6 @@
 #include "store.h"
 
 #include <fcntl.h>
-#include <ftw.h>
 #include <glob.h>
 #include <limits.h>
 #include <math.h>
@@ -21,11 +20,6 @@ static int run_words(int count, char **words) {
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
         if (!strcmp(commands[i]->name, words[0])) return commands[i]->run(commands[i], count, words);
     return CK_EXIT_USAGE;
-}
-
-static int remove_entry(const char *path, const struct stat *about, int type, struct FTW *place) {
-    (void)about, (void)type, (void)place;
-    return remove(path);
 }
 
 // True where no process has a case of any study in a folder.
@@ -69,7 +63,7 @@ static ck_Status check_folder(const ck_Sweeps *sweeps, ck_Error *error) {
     else if (arguments->forces && has_cases && !is_idle(folder))
         status = ck_fail(error, CK_BAD_INPUT, "%s: a study is running there; wait, or give another --out", out);
     else if (arguments->forces && has_cases)
-        nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+        ck_path_remove(folder);
     else if (results && !has_cases && !arguments->forces)
         status = ck_fail(error, CK_BAD_INPUT,
                          "%s/%s: holds results that are of no study, which would be lost; --force replaces them, "

@@ -6,22 +6,10 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <ftw.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place) {
-    (void)about;
-    (void)kind;
-    (void)place;
-    return remove(path);
-}
-
-static void remove_tree(const char *path) {
-    nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
-}
 
 // Charts are files that a report has written, or the user's own things lie among them and would be lost.
 static ck_Status check_charts(const char *charts, ck_Error *error) {
@@ -67,11 +55,11 @@ static ck_Status replace(const Places *places, ck_Error *error) {
     bool had_charts = !rename(places->charts, places->old_charts);
     bool failed = rename(places->new_charts, places->charts) || rename(places->new_page, places->page);
     if (!failed) {
-        if (had_charts) remove_tree(places->old_charts);
+        if (had_charts) ck_path_remove(places->old_charts);
         return CK_OK;
     }
     ck_Status status = ck_fail(error, CK_IO, "%s: %s", places->page, strerror(errno));
-    remove_tree(places->charts);
+    ck_path_remove(places->charts);
     if (had_charts && rename(places->old_charts, places->charts))
         status =
             ck_fail(error, CK_IO, "%s: the charts that were there are now in %s", places->charts, places->old_charts);
@@ -96,7 +84,7 @@ ck_Status ck_report_write(const char *directory, ck_Error *error) {
         status = ck_charts_draw(&data, places.new_charts, sources, drawn, error);
         if (!status) status = ck_page_write(&data, sources, places.new_charts, drawn, places.new_page, error);
         if (!status) status = replace(&places, error);
-        if (status) remove_tree(places.new_charts);
+        if (status) ck_path_remove(places.new_charts);
         if (status) unlink(places.new_page);
     }
     free(drawn);

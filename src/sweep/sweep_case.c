@@ -9,7 +9,6 @@
 #include "tables.h"
 
 #include <ctype.h>
-#include <ftw.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -274,11 +273,6 @@ static bool add_file(const Case *one, const char *directory, const ck_Layout *la
     return rows != NULL;
 }
 
-static int remove_entry(const char *path, const struct stat *about, int type, struct FTW *place) {
-    (void)about, (void)type, (void)place;
-    return remove(path);
-}
-
 // Any other command, in a child, with a folder of its own.
 static ck_Status run_command(Case *one, ck_Error *error) {
     const ck_SweepOptions *options = one->sweep->options;
@@ -304,7 +298,7 @@ static ck_Status run_command(Case *one, ck_Error *error) {
         const ck_LayoutName layout = written[options->file->run][i];
         if (layout && !add_file(one, work, &ck_layouts[layout])) refuse(one, "it wrote no result");
     }
-    if (work) nftw(work, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+    if (work) ck_path_remove(work);
     free(work);
     free(folder);
     return status;

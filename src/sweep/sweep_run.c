@@ -9,12 +9,12 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <ftw.h>
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -188,11 +188,6 @@ static ck_Status tell_machine(const char *folder, ck_Error *error) {
     return status;
 }
 
-static int remove_entry(const char *path, const struct stat *about, int type, struct FTW *place) {
-    (void)about, (void)type, (void)place;
-    return remove(path);
-}
-
 // What processes of this host that were killed have left: folders of work, and files without a case.
 static void sweep_up(const char *folder) {
     DIR *directory = opendir(folder);
@@ -206,7 +201,7 @@ static void sweep_up(const char *folder) {
         const bool is_gone = process > 0 && kill(process, 0) && errno == ESRCH;
         const bool is_left =
             !strcmp(ending, ".work") || (!strcmp(ending, ".cases") && path && !stat(path, &about) && !about.st_size);
-        if (path && is_gone && is_left) nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+        if (path && is_gone && is_left) ck_path_remove(path);
         free(path);
     }
     if (directory) closedir(directory);
