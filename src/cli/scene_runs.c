@@ -115,8 +115,8 @@ static char *question_of(const ck_Arguments *arguments, const ck_Comparison *com
         const char *version = ck_engine_version(arguments->options.engines[i]);
         scenes = ck_hash(scenes, version, strlen(version));
     }
-    return asprintf(&question, "%s\t(%d scenes %016llx, clothcheck %s)\n", arguments->question, count,
-                    (unsigned long long)scenes, CK_VERSION) < 0
+    return asprintf(&question, "%s\t(%d scenes %016llx, %s)\n", arguments->question, count, (unsigned long long)scenes,
+                    ck_machine_build()) < 0
                ? NULL
                : question;
 }

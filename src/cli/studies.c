@@ -13,9 +13,9 @@
 // What was asked, the scene's text and the program: what tells a journal's cases apart from anything else.
 static void write_question(ck_StudyCommand *command) {
     const ck_Document *document = &command->comparison->scene.document;
-    snprintf(command->question, sizeof command->question, "%s\t(scene %016llx, clothcheck %s)" CK_JOURNAL_PLACE "%s",
+    snprintf(command->question, sizeof command->question, "%s\t(scene %016llx, %s)" CK_JOURNAL_PLACE "%s",
              command->arguments->question, (unsigned long long)ck_hash(CK_HASH_START, document->text, document->length),
-             CK_VERSION, command->comparison->path);
+             ck_machine_build(), command->comparison->path);
 }
 
 static ck_Status find_truth(ck_Comparison *comparison, const ck_Arguments *arguments, ck_Error *error) {

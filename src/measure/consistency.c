@@ -8,6 +8,7 @@
 #define PIECES 4       // restarts
 #define APART 8        // frames from one restart to the next
 #define PIECE_FRAMES 4 // frames of a piece
+#define BLOWN_UP 10    // sizes: a step that parts further from the finest is unstable, and how far says nothing
 
 const int ck_consistency_multiples[CK_CONSISTENCY_STEPS] = {1, 2, 4};
 const char *const ck_consistency_names[CK_CONSISTENCY_STEPS] = {"self_consistency", "self_consistency_2",
@@ -111,6 +112,8 @@ ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double bu
     ck_Status status = ck_child_run(&child, restart_pieces, &(Job){run, result}, &own, error);
     for (int i = 0; i < CK_CONSISTENCY_STEPS && !status && child.end == CK_CHILD_DONE; i++)
         if (result->pieces[i]) deviation[i] = result->deviation[i] / result->pieces[i];
+    for (int i = 0; i < CK_CONSISTENCY_STEPS; i++)
+        if (deviation[i] > BLOWN_UP) deviation[i] = INFINITY;
     ck_shared_free(result, sizeof *result);
     return status;
 }

@@ -55,7 +55,7 @@ extern const char *const ck_consistency_names[CK_CONSISTENCY_STEPS];
 
 // Short pieces restarted from states of the engine's own finest run (an eighth of its step), at growing steps.
 //   deviation  [CK_CONSISTENCY_STEPS] out: mean over pieces of the rms distance at their end / size; NaN where a step
-//              cannot grow that far or the run would take too long
+//              cannot grow that far or the run would take too long, INFINITY where it blows up
 //   budget     s of CPU time that it may take, judged by the method, steps and springs: the same on every machine
 // Errors: CK_NO_MEMORY, CK_IO. Source: Erez, Tassa, Todorov 2015, Simulation tools for model-based robotics.
 ck_Status ck_consistency_measure(double *deviation, const ck_Run *run, double budget, const ck_Limits *limits,
