@@ -114,21 +114,18 @@ static double find_value(const ck_CsvTable *table, const ck_StudyChart *chart, c
 static ck_Status answer_chart(ck_Sweeps *sweeps, const ck_StudyChart *chart, ck_Error *error) {
     ck_Answer *answer = &sweeps->arguments->answer;
     const ck_CompareOptions *options = &sweeps->arguments->options;
-    ck_AnswerColumn columns[MOST_COLUMNS + 2] = {{"scene", "", -56, NULL}};
+    static ck_AnswerColumn columns[MOST_COLUMNS + 2]; // which must outlive the answer
     const int engines = options->engine_count < MOST_COLUMNS ? options->engine_count : MOST_COLUMNS;
     ck_CsvTable table = {0};
-    char title[200], name[300], word[CK_SWEEP_WORD];
+    char title[200], name[CK_SWEEP_NAME];
+    columns[0] = (ck_AnswerColumn){"scene", "", -56, NULL};
     for (int i = 0; i < engines; i++)
         columns[1 + i] = (ck_AnswerColumn){options->engines[i]->name, options->engines[i]->name, 15, "%.3g"};
     snprintf(title, sizeof title, "%s%s:", chart->metric, strcmp(chart->of, "error") ? "" : ", distance to the truth");
     ck_Status status = ck_csv_table_read(&table, sweeps->arguments->out, &ck_layouts[CK_METRICS], error);
     if (!status) ck_answer_table(answer, "chart", title, columns);
     for (int i = 0; i < sweeps->sweep.point_count && !status; i++) {
-        ck_Scene scene;
-        ck_sweep_word(&sweeps->sweep, i, word);
-        ck_Status loaded = ck_scene_load(&scene, word, NULL);
-        snprintf(name, sizeof name, "%.290s", loaded ? word : scene.file->name);
-        ck_scene_free(&scene);
+        ck_sweep_name(&sweeps->sweep, i, name);
         ck_answer_text(answer, name);
         for (int k = 0; k < engines; k++)
             ck_answer_number(answer, find_value(&table, chart, name, options->engines[k]->name));
@@ -143,7 +140,8 @@ static ck_Status answer(ck_Sweeps *sweeps, ck_Error *error) {
     ck_Status status = CK_OK;
     if (sweeps->file.run == CK_STUDY_COMPARE && sweeps->sweep.point_count <= MOST_ROWS)
         for (int i = 0; i < sweeps->file.chart_count && !status; i++)
-            status = answer_chart(sweeps, &sweeps->file.charts[i], error);
+            if (ck_metric_find(sweeps->file.charts[i].metric))
+                status = answer_chart(sweeps, &sweeps->file.charts[i], error);
     if (!status) status = answer_cases(sweeps, error);
     if (!status && sweeps->file.run == CK_STUDY_COMPARE && sweeps->sweep.point_count <= MOST_ROWS)
         status = ck_answer_findings(arguments, NULL, error);
@@ -152,7 +150,7 @@ static ck_Status answer(ck_Sweeps *sweeps, ck_Error *error) {
     return status;
 }
 
-// The results are written by one process; the others then find them written.
+// One process after the other, where several have shared the cases: each writes the same.
 static ck_Status write_results(ck_Sweeps *sweeps, ck_Error *error) {
     char *folder = ck_sweep_folder(sweeps->arguments->out);
     ck_Board board = {.file = -1};

@@ -39,16 +39,11 @@ static ck_Status read_part(Part *part, const char *directory, ck_Error *error) {
     return status;
 }
 
-// What is of one run alone, and not of machine and build.
-static bool is_of_run(const char *key) {
-    return !strcmp(key, "command") || !strcmp(key, "date") || !strncmp(key, "load ", 5);
-}
-
 static ck_Status check_machines(const Part *one, const Part *other, ck_Error *error) {
     const ck_CsvTable *a = &one->tables[CK_MACHINE], *b = &other->tables[CK_MACHINE];
     for (int i = 0; i < a->row_count; i++) {
         const char *key = ck_csv_table_text(a, i, 0);
-        bool is_same = is_of_run(key);
+        bool is_same = ck_machine_is_of_run(key);
         for (int k = 0; k < b->row_count && !is_same; k++)
             is_same = !strcmp(ck_csv_table_text(b, k, 0), key) &&
                       !strcmp(ck_csv_table_text(b, k, 1), ck_csv_table_text(a, i, 1));
@@ -85,17 +80,23 @@ static ck_Status check_whole(const Part *parts, int count, ck_Error *error) {
     return CK_OK;
 }
 
-// The engines of a part's first scene are those of all.
+// How many engines a part ran: the rows of its first scene, which stand together.
+static int count_engines(const Part *part) {
+    const ck_CsvTable *runs = &part->tables[CK_RUNS];
+    int count = 0;
+    while (count < runs->row_count && !strcmp(ck_csv_table_text(runs, count, 0), part->scenes[0])) count++;
+    return count;
+}
+
 static ck_Status check_engines(const Part *one, const Part *other, ck_Error *error) {
-    const ck_CsvTable *a = &one->tables[CK_RUNS], *b = &other->tables[CK_RUNS];
-    for (int i = 0; i < a->row_count && i < b->row_count; i++) {
-        if (strcmp(ck_csv_table_text(a, i, 0), one->scenes[0]) && strcmp(ck_csv_table_text(b, i, 0), other->scenes[0]))
-            break;
-        if (strcmp(ck_csv_text_of(a, i, "engine"), ck_csv_text_of(b, i, "engine")))
-            return ck_fail(error, CK_BAD_INPUT, "%s and %s are of other engines: %s and %s", one->directory,
-                           other->directory, ck_csv_text_of(a, i, "engine"), ck_csv_text_of(b, i, "engine"));
-    }
-    return CK_OK;
+    const int count = count_engines(one);
+    bool is_same = count == count_engines(other);
+    for (int i = 0; i < count && is_same; i++)
+        is_same = !strcmp(ck_csv_text_of(&one->tables[CK_RUNS], i, "engine"),
+                          ck_csv_text_of(&other->tables[CK_RUNS], i, "engine"));
+    return is_same ? CK_OK
+                   : ck_fail(error, CK_BAD_INPUT, "%s and %s are of other engines; give parts of one comparison",
+                             one->directory, other->directory);
 }
 
 static ck_Status check_scenes(const Part *parts, int count, ck_Error *error) {

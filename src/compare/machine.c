@@ -107,6 +107,10 @@ static void tell_command(ck_MachineFact tell, void *context) {
     tell(context, "command", line);
 }
 
+bool ck_machine_is_of_run(const char *key) {
+    return !strcmp(key, "command") || !strcmp(key, "date") || !strncmp(key, "load ", 5);
+}
+
 // What is of this run alone.
 static void tell_run(ck_MachineFact tell, void *context) {
     char text[64];

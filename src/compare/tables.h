@@ -54,6 +54,9 @@ const char *ck_machine_build(void);
 // Notes the machine's load before a command begins.
 void ck_machine_begin(void);
 
+// True for a fact of one run, as the command or the load, which is none of the machine and the build.
+bool ck_machine_is_of_run(const char *key);
+
 // Adds rows of key and value: what is told above, and the command, the load before and after it, and the date.
 void ck_machine_write(ck_Csv *csv);
 

@@ -172,6 +172,18 @@ static ck_Status find_work(const char *word, double *work, uint64_t *hash, ck_Er
     return status;
 }
 
+// A point and what it is sorted by.
+typedef struct PointKey {
+    uint64_t hash;
+    int point;
+} PointKey;
+
+static int compare_keys(const void *a, const void *b) {
+    const PointKey *one = a, *other = b;
+    if (one->hash != other->hash) return one->hash < other->hash ? -1 : 1;
+    return one->point - other->point;
+}
+
 // The form of a point's truth is solved, not told: by the scene's, or the value of a swept one.
 static bool is_solved(const ck_Sweep *sweep, int point, const bool *solves) {
     for (int k = 0; k < ck_sweep_key_count(sweep->options->file); k++) {
@@ -180,17 +192,6 @@ static bool is_solved(const ck_Sweep *sweep, int point, const bool *solves) {
         return form && form->solve;
     }
     return solves[ck_sweep_scene(sweep, point)];
-}
-
-typedef struct TruthKey {
-    uint64_t hash;
-    int point;
-} TruthKey;
-
-static int compare_truths(const void *a, const void *b) {
-    const TruthKey *one = a, *other = b;
-    if (one->hash != other->hash) return one->hash < other->hash ? -1 : 1;
-    return one->point - other->point;
 }
 
 // All that a truth depends on: of points that were loaded the model, else what is changed. A setting of an engine is
@@ -266,7 +267,7 @@ static uint64_t hash_case(const ck_Sweep *sweep, int point, int engine) {
 
 // Truths, each once, whatever points share it.
 static ck_Status find_truths(ck_Sweep *sweep, const bool *solves, ck_Error *error) {
-    TruthKey *truths = malloc(((size_t)sweep->point_count + 1) * sizeof *truths);
+    PointKey *truths = malloc(((size_t)sweep->point_count + 1) * sizeof *truths);
     sweep->truth_of = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->truth_of);
     sweep->truth_at = malloc(((size_t)sweep->point_count + 1) * sizeof *sweep->truth_at);
     if (!truths || !sweep->truth_of || !sweep->truth_at) {
@@ -277,9 +278,9 @@ static ck_Status find_truths(ck_Sweep *sweep, const bool *solves, ck_Error *erro
     for (int point = 0; point < sweep->point_count; point++) {
         sweep->truth_of[point] = -1;
         if (sweep->options->file->run == CK_STUDY_COMPARE && is_solved(sweep, point, solves))
-            truths[count++] = (TruthKey){hash_truth(sweep, point), point};
+            truths[count++] = (PointKey){hash_truth(sweep, point), point};
     }
-    qsort(truths, (size_t)count, sizeof *truths, compare_truths);
+    qsort(truths, (size_t)count, sizeof *truths, compare_keys);
     for (int i = 0; i < count; i++) {
         if (!i || truths[i].hash != truths[i - 1].hash) sweep->truth_at[sweep->truth_count++] = truths[i].point;
         sweep->truth_of[truths[i].point] = sweep->truth_count - 1;
@@ -305,27 +306,16 @@ static ck_Status find_keys(ck_Sweep *sweep, ck_Error *error) {
     return CK_OK;
 }
 
-typedef struct PointName {
-    uint64_t hash;
-    int point;
-} PointName;
-
-static int compare_names(const void *a, const void *b) {
-    const PointName *one = a, *other = b;
-    if (one->hash != other->hash) return one->hash < other->hash ? -1 : 1;
-    return one->point - other->point;
-}
-
 // Two points of one name would be one in the CSVs.
 static ck_Status check_names(const ck_Sweep *sweep, ck_Error *error) {
-    PointName *names = malloc(((size_t)sweep->point_count + 1) * sizeof *names);
+    PointKey *names = malloc(((size_t)sweep->point_count + 1) * sizeof *names);
     char name[CK_SWEEP_NAME];
     ck_Status status = names ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     for (int i = 0; i < sweep->point_count && names; i++) {
         ck_sweep_name(sweep, i, name);
-        names[i] = (PointName){hash_text(CK_HASH_START, name), i};
+        names[i] = (PointKey){hash_text(CK_HASH_START, name), i};
     }
-    if (names) qsort(names, (size_t)sweep->point_count, sizeof *names, compare_names);
+    if (names) qsort(names, (size_t)sweep->point_count, sizeof *names, compare_keys);
     for (int i = 1; i < sweep->point_count && !status; i++) {
         if (names[i].hash != names[i - 1].hash) continue;
         ck_sweep_name(sweep, names[i].point, name);

@@ -244,9 +244,13 @@ static void test_several_scenes(void **state) {
         "done; diff -q three/replays/bounce.replay threes/replays/bounce.replay",
         d);
     assert_int_equal(system(line), 0);
+    // a part that lacks an engine of the other, and one of another engine
+    snprintf(line, sizeof line, "compare " THREE " %s/other --shard 2/2 -e native-bars", d);
+    assert_int_equal(fixture_program(line), 0);
     static const struct {
         const char *parts, *said;
-    } wrong[] = {{"%s/again %s/three1 %s/three1", "both have pendulum"},
+    } wrong[] = {{"%s/again %s/three1 %s/other", "are of other engines"},
+                 {"%s/again %s/three1 %s/three1", "both have pendulum"},
                  {"%s/again %s/three2 %s/three1", "is part 2 of 2, and stands where part 1 of 2 should"},
                  {"%s/again %s/three1 %s/tuned", "are not parts of one command"},
                  {"%s/three %s/three1 %s/three2", "holds results, which would be lost"}};

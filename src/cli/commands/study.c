@@ -43,13 +43,14 @@ static ck_Status find_scenes(Study *study, ck_Error *error) {
     return status;
 }
 
+// Those of the file, where the command line names none.
 static ck_Status find_engines(Study *study, ck_Error *error) {
     ck_Arguments *arguments = &study->arguments;
+    const ck_StudyFile *file = &study->sweeps.file;
     ck_Status status = CK_OK;
-    for (int i = 0; i < study->sweeps.file.engine_count && arguments->options.engines != arguments->engines && !status;
-         i++)
-        for (; i < study->sweeps.file.engine_count && !status; i++)
-            status = ck_arguments_add_engines(arguments, study->sweeps.file.engines[i], error);
+    if (arguments->options.engines == arguments->engines) return CK_OK;
+    for (int i = 0; i < file->engine_count && !status; i++)
+        status = ck_arguments_add_engines(arguments, file->engines[i], error);
     return status;
 }
 
@@ -148,6 +149,9 @@ static ck_Status use_slurm(Study *study, ck_Error *error) {
                                      .part = part,
                                      .end = end};
     ck_Status status = folder ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    // a line that was cut would be another command
+    if (!status && (strlen(part) + 1 == sizeof part || strlen(end) + 1 == sizeof end))
+        status = ck_fail(error, CK_BAD_INPUT, "the command line of a part is longer than %zu characters", sizeof part);
     for (int i = 0; i < 2 && arguments->is_dry && !status; i++) {
         char *text = ck_slurm_script(&options, i);
         if (text) ck_answer_block(&arguments->answer, i ? "results_script" : "part_script", text);
