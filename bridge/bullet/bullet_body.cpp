@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-ck_BulletModel::ck_BulletModel(const ck_Model *scene) : scaled() {
+ck_BulletModel::ck_BulletModel(const ck_Model *scene) : scaled(), first(scene->rigid) {
     if (ck_scaled_model_create(&scaled, scene)) throw std::bad_alloc();
 }
 
@@ -16,11 +16,17 @@ ck_BulletModel::~ck_BulletModel() {
     ck_scaled_model_free(&scaled);
 }
 
-void ck_BulletModel::release(const double *at, const double *speed, int particle) {
+void ck_BulletModel::release(const double *at, const double *speed, const ck_Turn *turn, int particle) {
     ck_Model &now = scaled.model;
     for (int i = 0; i < 3 * now.particle_count; i++) {
         now.position[i] = at[i] / scaled.length;
         now.velocity[i] = speed[i] / scaled.length;
+    }
+    for (int i = 0; i < now.rigid_count; i++) {
+        ck_RigidBody &rigid = now.rigid[i];
+        rigid.shape = ck_rigid_place(&rigid, now.position + 3 * rigid.particle, ck_rigid_start(&rigid).rotation);
+        for (int k = 0; k < 3; k++) ck_rigid_rotate(rigid.shape.axes[k], turn[i].rotation, first[i].shape.axes[k]);
+        std::copy_n(turn[i].spin, 3, rigid.spin);
     }
     if (!ck_driven_find(&now, particle, 0)) std::fill_n(now.velocity + 3 * particle, 3, 0.0);
     now.pinned[particle] = false;
@@ -96,17 +102,17 @@ void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t s
     std::vector<btVector3> position;
     std::vector<btScalar> mass;
     for (bool pinned : {false, true})
-        for (int i = 0; i < model->particle_count; i++) {
+        for (int i = 0; i < ck_model_cloth_count(model); i++) {
             if (model->pinned[i] != pinned) continue;
             body.node_of_particle[i] = static_cast<int>(position.size());
             position.push_back(vector_at(model->position, i));
             body.particle_of_node.push_back(i);
             mass.push_back(pinned ? 0 : model->mass[i]);
         }
-    body.soft = std::make_unique<btSoftBody>(info, model->particle_count, position.data(), mass.data());
+    body.soft = std::make_unique<btSoftBody>(info, static_cast<int>(position.size()), position.data(), mass.data());
     add_links(body, reordered);
     fill_table(body);
-    for (int i = 0; i < model->particle_count; i++) {
+    for (int i = 0; i < ck_model_cloth_count(model); i++) {
         btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
         node.m_v = node.m_vn = vector_at(model->velocity, i);
     }
@@ -119,7 +125,7 @@ ck_BulletNodes ck_bullet_nodes(const ck_BulletBody &body, btVector3 btSoftBody::
 }
 
 void ck_bullet_body_read(const ck_BulletBody &body, double length, double *position, double *velocity) {
-    for (int i = 0; i < body.model->particle_count; i++) {
+    for (int i = 0; i < ck_model_cloth_count(body.model); i++) {
         const btSoftBody::Node &node = body.soft->m_nodes[body.node_of_particle[i]];
         for (int axis = 0; axis < 3; axis++) {
             position[3 * i + axis] = length * node.m_x[axis];
@@ -138,7 +144,7 @@ ck_BulletOuter::ck_BulletOuter(const ck_BulletBody &owner) : body(owner) {
 }
 
 void ck_BulletOuter::update(btVector3 btSoftBody::Node::*position) {
-    for (int i = 0; i < body.model->particle_count; i++)
+    for (int i = 0; i < ck_model_cloth_count(body.model); i++)
         for (int axis = 0; axis < 3; axis++) {
             at[static_cast<size_t>(3 * i + axis)] = (body.soft->m_nodes[node(i)].*position)[axis];
             speed[static_cast<size_t>(3 * i + axis)] = body.soft->m_nodes[node(i)].m_v[axis];

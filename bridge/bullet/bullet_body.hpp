@@ -6,6 +6,7 @@
 #include "bullet_loops.h"
 #include "engine.h"
 #include "hinges.h"
+#include "rigid.h"
 #include "scaled_model.h"
 #include "wind.h"
 
@@ -31,10 +32,16 @@ class ck_BulletModel {
     }
     // Goes on from that state, [3*n] m and m/s of the scene, with one pin less: at rest, or with
     // the speed that it is moved with.
-    void release(const double *at, const double *speed, int particle);
+    //   turn  [rigid_count]
+    void release(const double *at, const double *speed, const ck_Turn *turn, int particle);
+    // Rigid bodies as they were at the start of the scene.
+    const ck_RigidBody *first_rigid() const {
+        return first;
+    }
 
   private:
     ck_ScaledModel scaled;
+    const ck_RigidBody *first;
 };
 
 // The springs of a body sorted by their first ends, for the passes that the bridge adds.

@@ -3,9 +3,13 @@
 #include "collider.h"
 
 double ck_bullet_margin(const ck_Model *model) {
-    double margin = 0.1 * model->spacing;
+    // a rigid body rolls and turns over at where its shape ends
+    const double share = model->rigid_count ? 0.01 : 0.1;
+    double margin = share * model->spacing;
     for (int i = 0; i < model->collider_count; i++)
-        margin = btMin(margin, 0.1 * ck_collider_breadth(&model->colliders[i]));
+        margin = btMin(margin, share * ck_collider_breadth(&model->colliders[i]));
+    for (int i = 0; i < model->rigid_count; i++)
+        margin = btMin(margin, share * ck_collider_breadth(&model->rigid[i].shape));
     return margin;
 }
 
@@ -13,6 +17,8 @@ double ck_bullet_margin(const ck_Model *model) {
 // the body is one or two long: it is there wherever the body is. Bullet's distance test fails in boxes of some
 // thousands.
 const double half_side = 16;
+// That of a cylinder for rigid bodies, which may be anywhere.
+const double far_side = 1000;
 // How far the body may get from the middle of the box before it is moved.
 const double half_side_left = 4;
 
@@ -25,8 +31,9 @@ btTransform ck_bullet_place(const ck_Collider &collider, const btVector3 &middle
     const btVector3 x = vector_of(collider.axes[0]), y = vector_of(collider.axes[1]), z = vector_of(collider.axes[2]);
     if (collider.shape == CK_PLANE) {
         const btVector3 normal = vector_of(collider.normal);
-        return btTransform(shortestArcQuat(btVector3(0, 1, 0), normal),
-                           point + (above - normal * above.dot(normal)) - normal * (side + margin));
+        const btQuaternion up = shortestArcQuat(btVector3(0, 1, 0), normal);
+        if (margin < 0) return btTransform(up, point - normal * margin);
+        return btTransform(up, point + (above - normal * above.dot(normal)) - normal * (side + margin));
     }
     // a capsule of Bullet's stands along y
     if (collider.shape == CK_CAPSULE) return btTransform(shortestArcQuat(btVector3(0, 1, 0), x), point);
@@ -48,7 +55,9 @@ std::unique_ptr<btCollisionShape> ck_bullet_shape(const ck_Collider &collider, d
         box->setMargin(btMax(radius, 1e-3 * ck_collider_breadth(&collider)));
         return box;
     }
-    default: return std::make_unique<btBoxShape>(btVector3(side, side, side));
+    default:
+        if (margin < 0) return std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0));
+        return std::make_unique<btBoxShape>(btVector3(side, side, side));
     }
 }
 
@@ -66,29 +75,50 @@ static btVector3 middle_of(const ck_BulletBody &body) {
     return (low + high) * 0.5;
 }
 
+void ck_BulletColliders::add_collider(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, int index,
+                                      double margin, int group, int mask) {
+    const ck_Collider &collider = body.model->colliders[index];
+    shapes.push_back(ck_bullet_shape(collider, margin, margin < 0 ? far_side : half_side));
+    btRigidBody::btRigidBodyConstructionInfo construction(0, nullptr, shapes.back().get());
+    construction.m_startWorldTransform = ck_bullet_place(collider, middle_of(body), margin, half_side);
+    // without any friction at all Bullet's projection divides by it
+    construction.m_friction = btMax(1e-12, collider.friction);
+    construction.m_restitution = collider.restitution;
+    bodies.push_back(std::make_unique<btRigidBody>(construction));
+    bodies.back()->setUserIndex(index);
+    world.addRigidBody(bodies.back().get(), group, mask);
+}
+
 void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody &body, btSoftBodyWorldInfo &info) {
     const ck_Model *model = body.model;
-    if (!model->collider_count) return;
+    if (!model->collider_count && !model->rigid_count) return;
     double margin = ck_bullet_margin(model), voxel = 0.25;
     body.soft->getCollisionShape()->setMargin(margin);
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider &collider = model->colliders[i];
         start_of.push_back(collider);
         end_of.push_back(collider);
-        shapes.push_back(ck_bullet_shape(collider, margin, half_side));
-        const btTransform place = ck_bullet_place(collider, middle_of(body), margin, half_side);
         // a grid this fine is off by some 1e-4 of the radius; of a plane any is exact
         if (collider.shape != CK_PLANE) voxel = btMin(voxel, ck_collider_breadth(&collider) / 60);
-        btRigidBody::btRigidBodyConstructionInfo construction(0, nullptr, shapes.back().get());
-        construction.m_startWorldTransform = place;
-        // without any friction at all Bullet's projection divides by it
-        construction.m_friction = btMax(1e-12, collider.friction);
-        bodies.push_back(std::make_unique<btRigidBody>(construction));
-        bodies.back()->setUserIndex(i);
-        world.addRigidBody(bodies.back().get());
+        add_collider(world, body, i, margin, btBroadphaseProxy::StaticFilter,
+                     btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+        if (model->rigid_count)
+            add_collider(world, body, i, -margin, ck_bullet_surface_group, ck_bullet_rigid_group ^ 1);
     }
+    for (int i = 0; i < model->rigid_count; i++) {
+        start_of.push_back(model->rigid[i].shape);
+        end_of.push_back(model->rigid[i].shape);
+        voxel = btMin(voxel, ck_collider_breadth(&model->rigid[i].shape) / 60);
+    }
+    rigid.add(world, model, margin, model->collider_count, body.dt, false);
     info.m_sparsesdf.setDefaultVoxelsz(voxel);
     info.m_sparsesdf.Reset();
+}
+
+// The margin of a collider's first shape or, for rigid bodies, its second.
+static double margin_of(const ck_BulletBody &body, const btRigidBody &object) {
+    const bool is_second = object.getBroadphaseProxy()->m_collisionFilterGroup == ck_bullet_surface_group;
+    return ck_bullet_margin(body.model) * (is_second ? -1 : 1);
 }
 
 void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body) {
@@ -96,7 +126,7 @@ void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletB
     for (auto &object : bodies) {
         const ck_Collider &collider = at_start(object.get());
         if (!is_endless(collider) || collider.path) continue;
-        btTransform place = ck_bullet_place(collider, middle, ck_bullet_margin(body.model), half_side);
+        btTransform place = ck_bullet_place(collider, middle, margin_of(body, *object), half_side);
         if (!((place.getOrigin() - object->getWorldTransform().getOrigin()).length() > half_side_left)) continue;
         object->setWorldTransform(place);
         object->setInterpolationWorldTransform(place);
@@ -113,17 +143,25 @@ void ck_BulletColliders::move(btDiscreteDynamicsWorld &world, const ck_BulletBod
         start_of[index] = ck_collider_at(&collider, start, 1, velocity, acceleration);
         end_of[index] = ck_collider_at(&collider, start + body.dt, -1, velocity, acceleration);
         const double *from = start_of[index].point, *to = end_of[index].point;
-        const btTransform place =
-            ck_bullet_place(end_of[index], middle_of(body), ck_bullet_margin(body.model), half_side);
+        const btTransform place = ck_bullet_place(end_of[index], middle_of(body), margin_of(body, *object), half_side);
         object->setWorldTransform(place);
         object->setInterpolationWorldTransform(place);
         object->setLinearVelocity(btVector3(to[0] - from[0], to[1] - from[1], to[2] - from[2]) / body.dt);
         world.updateSingleAabb(object.get());
     }
+    for (size_t i = 0; i < static_cast<size_t>(body.model->rigid_count); i++)
+        start_of[start_of.size() - body.model->rigid_count + i] = end_of[end_of.size() - body.model->rigid_count + i] =
+            rigid.place(body.model, i);
 }
 
 void ck_BulletColliders::remove(btDiscreteDynamicsWorld &world) {
     for (auto &body : bodies) world.removeRigidBody(body.get());
+    rigid.remove(world);
+}
+
+void ck_BulletColliders::strike(const btCollisionObject *object, const btVector3 &impulse, const btVector3 &at) const {
+    if (btRigidBody *body = rigid.body_of(object->getUserIndex()))
+        body->applyImpulse(impulse, at - body->getWorldTransform().getOrigin());
 }
 
 double ck_bullet_gap(const ck_Collider &collider, const btVector3 &point, double normal[3]) {

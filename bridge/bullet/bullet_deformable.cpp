@@ -30,7 +30,7 @@ class World : public btDeformableMultiBodyDynamicsWorld {
 
     // stepSimulation would only wrap profiling and interpolation around this
     void step_once(btScalar dt) {
-        if (body->model->collider_count) {
+        if (body->model->collider_count || body->model->rigid_count) {
             speed_before.resize(body->soft->m_nodes.size());
             for (int i = 0; i < body->soft->m_nodes.size(); i++) speed_before[i] = body->soft->m_nodes[i].m_v;
         }
@@ -70,9 +70,9 @@ class World : public btDeformableMultiBodyDynamicsWorld {
 void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btScalar dt) {
     const ck_Collider &collider =
         is_implicit ? colliders->at_start(contact.m_cti.m_colObj) : colliders->at_end(contact.m_cti.m_colObj);
-    const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj);
     if (!(collider.restitution > 0)) return;
     btSoftBody::Node &node = *contact.m_node;
+    const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj, node.m_q);
     double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
     btVector3 normal(out[0], out[1], out[2]);
     double pull = -ck_bullet_field(*body, body->particle_of_node[node.index]).dot(normal);
@@ -85,7 +85,9 @@ void World::rebound(const btSoftBody::DeformableNodeRigidContact &contact, btSca
     btVector3 along = before - normal * before.dot(normal);
     double sliding = along.length();
     if (sliding > 0) along *= 1 - btMin(1.0, collider.friction * (speed + leaving) / sliding);
+    const btVector3 solved = node.m_v;
     node.m_v = carried + along + normal * leaving;
+    if (node.m_im > 0) colliders->strike(contact.m_cti.m_colObj, (solved - node.m_v) / node.m_im, node.m_q);
 }
 
 // Bullet keeps the count of Newton iterations to itself
@@ -135,7 +137,7 @@ ck_Status time_step_limit(const ck_Model *model, bool is_implicit, double *limit
     ck_Status status = is_implicit ? CK_OK : ck_stability_frequency(model, &frequency);
     if (frequency > 0) *limit = btMin(*limit, 1 / frequency);
     double rate = ck_stability_stiffness_rate(model);
-    if (model->collider_count && rate > 0) *limit = std::fmin(*limit, std::sqrt(2 / rate));
+    if ((model->collider_count || model->rigid_count) && rate > 0) *limit = std::fmin(*limit, std::sqrt(2 / rate));
     return status;
 }
 
@@ -147,7 +149,8 @@ double unit_of(const ck_Model *model) {
 // The explicit world clamps speeds to the body's bounding box, margins and all, per step.
 void ledger_speed(const ck_Model *model, const ck_Settings &used, ck_Ledger *ledger) {
     btVector3 low(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT), high = -low;
-    double fastest = 0, margin = model->collider_count ? ck_bullet_margin(model) : 0.25 * unit_of(model);
+    double fastest = 0,
+           margin = model->collider_count || model->rigid_count ? ck_bullet_margin(model) : 0.25 * unit_of(model);
     for (int i = 0; i < model->particle_count; i++) {
         const double *at = model->position + 3 * i, *speed = model->velocity + 3 * i;
         low.setMin(btVector3(at[0], at[1], at[2]));
@@ -237,7 +240,9 @@ std::unique_ptr<Deformable> build_world(const ck_Model *model, const ck_Settings
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                  ck_Error *error, bool is_implicit) {
     return ck_bullet_guarded(error, [&] {
-        ck_Status status = translate(model, wanted, used, ledger, is_implicit);
+        ck_Status status = ck_bullet_check_rigid(model, error);
+        if (status) return status;
+        status = translate(model, wanted, used, ledger, is_implicit);
         if (status) throw std::bad_alloc();
         auto state = std::make_unique<DeformableState>(model, *used, is_implicit);
         state->now = build_world(state->scene.model(), *used, is_implicit);
@@ -274,12 +279,25 @@ ck_StepResult step(void *out) {
         return CK_OK;
     });
     if (status) return CK_STEP_NO_MEMORY;
+    if (!state.colliders.rigid.is_finite()) return CK_STEP_DIVERGED;
     return ck_bullet_body_is_finite(state.body) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+void pace(void *out, double duration) {
+    DeformableState &state = *static_cast<DeformableState *>(out);
+    if (state.now) state.now->body.dt = duration / state.now->body.substeps;
 }
 
 void read_state(const void *out, double *position, double *velocity) {
     const DeformableState &state = *static_cast<const DeformableState *>(out);
-    if (state.now) ck_bullet_body_read(state.now->body, state.scene.length(), position, velocity);
+    if (!state.now) return;
+    ck_bullet_body_read(state.now->body, state.scene.length(), position, velocity);
+    state.now->colliders.rigid.read(state.scene.model(), state.scene.length(), position, velocity);
+}
+
+void read_turn(const void *out, ck_Turn *turn) {
+    const DeformableState &state = *static_cast<const DeformableState *>(out);
+    if (state.now) state.now->colliders.rigid.read_turns(state.scene.first_rigid(), turn);
 }
 
 // Bullet keeps masses in many places: the world is built again.
@@ -288,7 +306,9 @@ void release(void *out, int particle) {
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
         std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
         read_state(out, position.data(), velocity.data());
-        state.scene.release(position.data(), velocity.data(), particle);
+        std::vector<ck_Turn> turn(static_cast<size_t>(state.scene.model()->rigid_count));
+        read_turn(out, turn.data());
+        state.scene.release(position.data(), velocity.data(), turn.data(), particle);
         state.now = build_world(state.scene.model(), state.used, state.is_implicit);
         return CK_OK;
     });
@@ -327,7 +347,7 @@ ck_Status code_explicit(ck_Code *out, const ck_ScaledModel *scaled, const ck_Set
 
 const unsigned terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
                        CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND |
-                       CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
+                       CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES | CK_TERM_JITTER;
 
 const ck_Setting implicit_settings[] = {
     {.name = "substeps",
@@ -377,9 +397,11 @@ extern "C" const ck_Engine ck_bullet_implicit = {
     .damped_rest_order = 0,
     .create = create_implicit,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .turn = read_turn,
     .remark = remark,
     .destroy = destroy,
     .code = code_implicit,
@@ -399,9 +421,11 @@ extern "C" const ck_Engine ck_bullet_explicit = {
     .damped_rest_order = 0,
     .create = create_explicit,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .turn = read_turn,
     .remark = remark,
     .destroy = destroy,
     .code = code_explicit,

@@ -58,7 +58,8 @@ struct Surroundings {
 struct Landing {
     btSoftBody::Node *node;
     btVector3 normal;
-    btVector3 carried;     // m/s of the collider
+    btVector3 carried; // m/s of the collider
+    const btCollisionObject *object;
     double shift, leaving; // m and m/s along the normal
     double incoming;       // m/s against it
 };
@@ -109,8 +110,8 @@ double kappa(const ck_Spring &spring, double weight, double dt, const ck_Setting
 }
 
 // The share of speed that damping takes in a substep.
-double speed_taken(const ck_Model *model, const ck_Settings &used) {
-    return ck_settings_own(&used, OWN_DAMPING, 1 - 1 / (1 + model->drag * model->step / used.substeps));
+double speed_taken(const ck_Model *model, const ck_Settings &used, double dt) {
+    return ck_settings_own(&used, OWN_DAMPING, 1 - 1 / (1 + model->drag * dt));
 }
 
 double spring_weight(const ck_Model *model, const ck_Spring &spring) {
@@ -137,7 +138,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
     if (model->terms & CK_TERM_RIGID) limit = ck_stability_bar_time(model, used->iterations);
     limit = std::fmin(limit, 0.5 / ck_stability_damping_rate(model));
     limit = std::fmin(limit, ck_stability_drag_time(model, 0.02));
-    if (model->collider_count) limit = std::fmin(limit, 1.0 / 240);
+    if (model->collider_count || model->rigid_count) limit = std::fmin(limit, 1.0 / 240);
     limit = std::fmin(limit, ck_stability_bending_time(model));
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     double dt = model->step / used->substeps;
@@ -164,7 +165,7 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
                        "c*(dv.n) before every second step: explicit", CK_APPROXIMATE});
     if ((model->terms & CK_TERM_DRAG) || ck_settings_has(used, CK_OWN + OWN_DAMPING))
         ck_ledger_add(ledger,
-                      {"drag", model->drag, "1/s", "m_cfg.kDP", speed_taken(model, *used),
+                      {"drag", model->drag, "1/s", "m_cfg.kDP", speed_taken(model, *used, dt),
                        ck_settings_has(used, CK_OWN + OWN_DAMPING) ? "as set" : "1 - 1/(1 + drag*dt)", CK_APPROXIMATE});
 }
 
@@ -211,8 +212,8 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
     for (int i = 0; i < body.soft->m_rcontacts.size(); i++) {
         btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
         const ck_Collider &collider = state.around->colliders.at_start(contact.m_cti.m_colObj);
-        const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj);
         const btSoftBody::Node &node = *contact.m_node;
+        const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj, node.m_q);
         // Bullet's normals are slopes of a grid, off by a hundredth on a ball whose radius is sixty of its voxels
         double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
         const btVector3 normal(out[0], out[1], out[2]);
@@ -228,6 +229,7 @@ void edit_contacts(btDynamicsWorld *world, btScalar dt) {
         landing.node = contact.m_node;
         landing.normal = normal;
         landing.carried = carried;
+        landing.object = contact.m_cti.m_colObj;
         state.landings.push_back(landing);
         double push = std::fmax(0, press) + dt * landing.leaving;
         contact.m_c3 = slip > 0 ? 1 - std::fmin(1, collider.friction * push / slip) : 0;
@@ -243,6 +245,8 @@ void finish_landings(Classic &state) {
         if ((node.m_v - landing.carried).dot(landing.normal) > 1e-6 * landing.incoming) continue;
         node.m_x += landing.normal * landing.shift;
         node.m_v += landing.normal * landing.leaving;
+        if (landing.leaving > 0)
+            state.around->colliders.strike(landing.object, landing.normal * (-landing.leaving / node.m_im), node.m_x);
     }
 }
 
@@ -268,6 +272,23 @@ void surround(Classic &state) {
     world.addSoftBody(&soft);
 }
 
+// What goes by the substep, s: how much of a speed and of a link's error is taken.
+void set_step(Classic &state, const ck_Settings &used, double dt) {
+    const ck_Model *model = state.body.model;
+    state.body.dt = dt;
+    state.body.soft->m_cfg.kDP = speed_taken(model, used, dt);
+    state.apart = substeps_apart(model, dt);
+    state.of_one.clear();
+    state.least.clear();
+    for (int link : state.body.links.link) {
+        const ck_Spring &spring = *state.body.spring[link];
+        double weight = spring_weight(model, spring), share = kappa(spring, weight, dt, used);
+        state.of_one.push_back(weight / share);
+        state.least.push_back(share);
+        state.body.soft->m_links[link].m_c0 = weight / share;
+    }
+}
+
 std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
     auto state = std::make_unique<Classic>();
     state->info.m_gravity = btVector3(model->gravity[0], model->gravity[1], model->gravity[2]);
@@ -277,25 +298,20 @@ std::unique_ptr<Classic> build(const ck_Model *model, const ck_Settings &used) {
     btSoftBody &soft = *state->body.soft;
     soft.m_cfg.piterations = static_cast<int>(used.iterations);
     soft.m_cfg.kDF = 1;
-    soft.m_cfg.kDP = speed_taken(model, used);
     state->corrects = !(used.softness > 0) && !(model->terms & CK_TERM_RIGID);
-    state->apart = substeps_apart(model, state->body.dt);
-    for (int link : state->body.links.link) {
-        const ck_Spring &spring = *state->body.spring[link];
-        double weight = spring_weight(model, spring), share = kappa(spring, weight, state->body.dt, used);
-        state->of_one.push_back(weight / share);
-        state->least.push_back(share);
+    for (int link : state->body.links.link)
         state->slot.push_back(link * static_cast<int>(sizeof(btSoftBody::Link) / sizeof(btScalar)));
-        soft.m_links[link].m_c0 = weight / share;
-    }
+    set_step(*state, used, state->body.dt);
     state->field_force = btVector3(model->force[0], model->force[1], model->force[2]);
-    if (model->collider_count) surround(*state);
+    if (model->collider_count || model->rigid_count) surround(*state);
     return state;
 }
 
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                  ck_Error *error) {
     return ck_bullet_guarded(error, [&] {
+        ck_Status status = ck_bullet_check_rigid(model, error);
+        if (status) return status;
         translate(model, wanted, used, ledger);
         auto state = std::make_unique<ClassicState>(model, *used);
         state->now = build(state->scene.model(), *used);
@@ -335,6 +351,7 @@ void step_once(Classic &state, double end) {
         for (int node = 0; node < soft.m_nodes.size(); node++) soft.addForce(state.field_force, node);
     if (state.around) {
         state.around->colliders.move(state.around->world, state.body, end - state.body.dt);
+        state.around->colliders.rigid.push();
         state.around->world.step_once(state.body.dt);
         finish_landings(state);
         return;
@@ -354,12 +371,26 @@ ck_StepResult step(void *out) {
         return CK_OK;
     });
     if (status) return CK_STEP_NO_MEMORY;
+    if (state.around && !state.around->colliders.rigid.is_finite()) return CK_STEP_DIVERGED;
     return ck_bullet_body_is_finite(state.body) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+void pace(void *out, double duration) {
+    ClassicState &state = *static_cast<ClassicState *>(out);
+    if (state.now) set_step(*state.now, state.used, duration / state.used.substeps);
 }
 
 void read_state(const void *out, double *position, double *velocity) {
     const ClassicState &state = *static_cast<const ClassicState *>(out);
-    if (state.now) ck_bullet_body_read(state.now->body, state.scene.length(), position, velocity);
+    if (!state.now) return;
+    ck_bullet_body_read(state.now->body, state.scene.length(), position, velocity);
+    if (state.now->around)
+        state.now->around->colliders.rigid.read(state.scene.model(), state.scene.length(), position, velocity);
+}
+
+void read_turn(const void *out, ck_Turn *turn) {
+    const ClassicState &state = *static_cast<const ClassicState *>(out);
+    if (state.now && state.now->around) state.now->around->colliders.rigid.read_turns(state.scene.first_rigid(), turn);
 }
 
 // Bullet keeps masses in many places: the body is built again.
@@ -368,7 +399,9 @@ void release(void *out, int particle) {
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
         std::vector<double> position(3 * state.scene.model()->particle_count), velocity(position.size());
         read_state(out, position.data(), velocity.data());
-        state.scene.release(position.data(), velocity.data(), particle);
+        std::vector<ck_Turn> turn(static_cast<size_t>(state.scene.model()->rigid_count));
+        read_turn(out, turn.data());
+        state.scene.release(position.data(), velocity.data(), turn.data(), particle);
         state.now = build(state.scene.model(), state.used);
         return CK_OK;
     });
@@ -384,7 +417,7 @@ ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, const ck_Settings *u
     bool corrects = !(used->softness > 0) && !(model->terms & CK_TERM_RIGID);
     code->text = ck_code_bullet_pbd;
     code->extension = "cpp";
-    ck_code_number(code, "kdp", speed_taken(model, *used));
+    ck_code_number(code, "kdp", speed_taken(model, *used, model->step / used->substeps));
     ck_code_number(code, "share", used->softness);
     ck_code_number(code, "apart", substeps_apart(model, model->step / used->substeps));
     ck_code_number(code, "margin", ck_bullet_margin(model));
@@ -456,7 +489,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .method = CK_METHOD_BULLET_PBD,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |
              CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |
-             CK_TERM_MOVING_COLLIDERS,
+             CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES | CK_TERM_JITTER,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .order = 1,
@@ -464,9 +497,11 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .damped_rest_order = 2,
     .create = create,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .turn = read_turn,
     .remark = nullptr,
     .destroy = destroy,
     .code = code,

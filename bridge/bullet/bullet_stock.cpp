@@ -29,9 +29,11 @@ struct Stock {
     ck_Model model; // the caller's, but for its pins
     ck_Settings used;
     btScalar fixed_step; // s
+    btScalar frame;      // s, of the next calls
     uint64_t done = 0;   // steps
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
+    ck_BulletRigid rigid;
     std::unique_ptr<btSoftBody> soft;
     btSoftBodyRigidBodyCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
@@ -43,6 +45,7 @@ struct Stock {
     ~Stock() {
         if (soft) world.removeSoftBody(soft.get());
         for (auto &body : bodies) world.removeRigidBody(body.get());
+        rigid.remove(world);
     }
 };
 
@@ -101,13 +104,13 @@ void add_soft_body(Stock &stock) {
     const ck_Model *model = &stock.model;
     std::vector<btVector3> position;
     std::vector<btScalar> mass;
-    for (int i = 0; i < model->particle_count; i++) {
+    for (int i = 0; i < ck_model_cloth_count(model); i++) {
         const double *at = model->position + 3 * i;
         position.push_back(btVector3(at[0], at[1], at[2]));
         mass.push_back(model->pinned[i] ? 0 : model->mass[i]);
     }
     btSoftBodyWorldInfo &info = stock.world.getWorldInfo();
-    stock.soft = std::make_unique<btSoftBody>(&info, model->particle_count, position.data(), mass.data());
+    stock.soft = std::make_unique<btSoftBody>(&info, ck_model_cloth_count(model), position.data(), mass.data());
     btSoftBody &soft = *stock.soft;
     // a material a kind, as kLST is a material's; of springs with values of their own, one each
     for (int i = 0; i < model->spring_count; i++) {
@@ -120,7 +123,7 @@ void add_soft_body(Stock &stock) {
     soft.m_cfg.kDF = ck_settings_own(&stock.used, OWN_FRICTION, soft.m_cfg.kDF);
     double margin = ck_settings_own(&stock.used, OWN_MARGIN, 0);
     if (margin > 0) soft.getCollisionShape()->setMargin(margin);
-    for (int i = 0; i < model->particle_count; i++) {
+    for (int i = 0; i < ck_model_cloth_count(model); i++) {
         const double *speed = model->velocity + 3 * i;
         soft.m_nodes[i].m_v = btVector3(speed[0], speed[1], speed[2]);
     }
@@ -175,10 +178,13 @@ void drive(btDynamicsWorld *world, btScalar dt) {
 ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
                  ck_Error *error) {
     return ck_bullet_guarded(error, [&] {
+        ck_Status status = ck_bullet_check_rigid(model, error);
+        if (status) return status;
         translate(model, wanted, used, ledger);
         auto stock = std::make_unique<Stock>();
         stock->model = *model;
         stock->used = *used;
+        stock->frame = static_cast<btScalar>(model->step);
         stock->fixed_step = fixed_step_of(static_cast<btScalar>(model->step), used->substeps);
         const btVector3 gravity(model->gravity[0], model->gravity[1], model->gravity[2]);
         btSoftBodyWorldInfo &info = stock->world.getWorldInfo();
@@ -189,6 +195,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         info.m_sparsesdf.Initialize();
         add_soft_body(*stock);
         add_colliders(*stock);
+        stock->rigid.add(stock->world, &stock->model, 0, model->collider_count, 0, true);
         if (model->path_count) stock->world.setInternalTickCallback(drive, stock.get(), true);
         *out = stock.release();
         return CK_OK;
@@ -198,14 +205,18 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
 ck_StepResult step(void *state) {
     Stock &stock = *static_cast<Stock *>(state);
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
-        stock.world.stepSimulation(static_cast<btScalar>(stock.model.step), static_cast<int>(stock.used.substeps),
-                                   stock.fixed_step);
+        stock.world.stepSimulation(stock.frame, static_cast<int>(stock.used.substeps), stock.fixed_step);
         return CK_OK;
     });
     if (status) return CK_STEP_NO_MEMORY;
     for (int i = 0; i < stock.soft->m_nodes.size(); i++)
         if (!std::isfinite(stock.soft->m_nodes[i].m_x.length2())) return CK_STEP_DIVERGED;
-    return CK_STEP_OK;
+    return stock.rigid.is_finite() ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+// It takes fixed steps, as many as fit; what is left waits for the next call.
+void pace(void *state, double duration) {
+    static_cast<Stock *>(state)->frame = static_cast<btScalar>(duration);
 }
 
 void read_state(const void *state, double *position, double *velocity) {
@@ -215,6 +226,12 @@ void read_state(const void *state, double *position, double *velocity) {
             position[3 * i + axis] = stock.soft->m_nodes[i].m_x[axis];
             velocity[3 * i + axis] = stock.soft->m_nodes[i].m_v[axis];
         }
+    stock.rigid.read(&stock.model, 1, position, velocity);
+}
+
+void read_turn(const void *state, ck_Turn *turn) {
+    const Stock &stock = *static_cast<const Stock *>(state);
+    stock.rigid.read_turns(stock.model.rigid, turn);
 }
 
 // setMass also takes the lengths of that moment for lengths at rest: as anybody's who calls it.
@@ -294,15 +311,18 @@ extern "C" const ck_Engine ck_bullet_stock = {
     .version = ck_bullet_version,
     .method = CK_METHOD_UNKNOWN,
     .terms = CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
+             CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES |
+             CK_TERM_JITTER,
     .settings = settings,
     .is_single = CK_BULLET_IS_SINGLE,
     .is_stock = true,
     .create = create,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = nullptr,
+    .turn = read_turn,
     .remark = remark,
     .destroy = destroy,
 };

@@ -21,6 +21,7 @@ function makeWorld(gravity) {
   settings.mMaxWorkerThreads = 0;
   const pairs = new jolt.ObjectLayerPairFilterTable(LAYERS);
   pairs.EnableCollision(0, 1);
+  pairs.EnableCollision(1, 1);
   const broad = new jolt.BroadPhaseLayerInterfaceTable(LAYERS, LAYERS);
   for (let layer = 0; layer < LAYERS; layer++) broad.MapObjectToBroadPhaseLayer(layer, new jolt.BroadPhaseLayer(layer));
   settings.mObjectLayerPairFilter = pairs;
@@ -110,6 +111,30 @@ function addCollider(bodies, collider, size) {
   }
 }
 
+// A rigid body of Jolt's own: a rounded box is one box with that convex radius.
+function addBody(bodies, body, scene) {
+  const [x, y, z, vx, vy, vz, mass] = scene.particles[body.particle];
+  const { shape, radius, half, axes } = body;
+  const solid = shape === 'sphere' ? new jolt.SphereShape(radius)
+    : new jolt.BoxShape(new jolt.Vec3(...half.map((side) => side + radius)), radius);
+  const turn = shape === 'sphere' ? jolt.Quat.prototype.sIdentity() : turnOf(axes);
+  const settings = new jolt.BodyCreationSettings(solid, new jolt.RVec3(x, y, z), turn, jolt.EMotionType_Dynamic, 1);
+  settings.mLinearVelocity = new jolt.Vec3(vx, vy, vz);
+  settings.mAngularVelocity = new jolt.Vec3(...body.spin);
+  settings.mFriction = body.friction * body.friction;
+  settings.mRestitution = body.restitution;
+  settings.mLinearDamping = scene.drag;
+  settings.mAngularDamping = 0;
+  settings.mAllowSleeping = false;
+  settings.mMaxLinearVelocity = 1e6;
+  settings.mMaxAngularVelocity = 1e6;
+  settings.mOverrideMassProperties = jolt.EOverrideMassProperties_CalculateInertia;
+  settings.mMassPropertiesOverride.mMass = mass;
+  const made = bodies.CreateBody(settings);
+  bodies.AddBody(made.GetID(), jolt.EActivation_Activate);
+  return { made, start: turn };
+}
+
 // As gravity moves points along its own axes, the spacing there counts.
 function substepsFor({ step, gravity, particles, size }) {
   const longest = gravity.map((pull, axis) => {
@@ -125,7 +150,7 @@ function build(scene) {
   made.updates = scene.settings.updates ?? 1;
   made.substeps = scene.settings.substeps ?? substepsFor(scene);
   const settings = new jolt.SoftBodyCreationSettings(
-    makeShape(scene.particles, scene.springs), new jolt.RVec3(0, 0, 0), jolt.Quat.prototype.sIdentity(), 1);
+    makeShape(scene.particles.slice(0, scene.particles.length - scene.bodies.length), scene.springs), new jolt.RVec3(0, 0, 0), jolt.Quat.prototype.sIdentity(), 1);
   settings.mNumIterations = made.substeps;
   settings.mLinearDamping = scene.drag;
   settings.mMaxLinearVelocity = 1e6;
@@ -138,9 +163,11 @@ function build(scene) {
   made.body = bodies.CreateSoftBody(settings);
   bodies.AddBody(made.body.GetID(), jolt.EActivation_Activate);
   scene.colliders.forEach((collider) => addCollider(bodies, collider, scene.size));
+  made.rigid = scene.bodies.map((body) => addBody(bodies, body, scene));
   made.motion = jolt.castObject(made.body.GetMotionProperties(), jolt.SoftBodyMotionProperties);
   // Jolt shares a body's force out among its vertices
-  made.push = new jolt.Vec3(...scene.force.map((f) => f * scene.particles.length));
+  made.push = new jolt.Vec3(...scene.force.map((f) => f * (scene.particles.length - scene.bodies.length)));
+  made.one = new jolt.Vec3(...scene.force);
   return made;
 }
 
@@ -174,25 +201,38 @@ function ledger({ springs, gravity, force, drag, step, colliders, updates, subst
 }
 
 function begin(scene) {
+  if (scene.bodies.some((body) => body.hung.length > 0))
+    return 'refuse edges of Jolt\'s soft bodies join their own vertices, not rigid bodies\n';
   world = build(scene);
   return `uses substeps ${world.substeps}\nuses updates ${world.updates}\n${ledger(world)}ready\n`;
 }
 
 function step() {
   world.body.AddForce(world.push);
+  for (const { made } of world.rigid) made.AddForce(world.one);
   world.jolt.Step(world.step, world.updates);
   const { mMin, mMax } = world.motion.GetLocalBounds();
   return [mMin, mMax].every((at) => Number.isFinite(at.GetX() + at.GetY() + at.GetZ())) ? 'ok\n' : 'diverged\n';
 }
 
-// [2][particles][3] doubles.
+const list = (vector) => [vector.GetX(), vector.GetY(), vector.GetZ()];
+
+// [2][particles][3] doubles, and of each rigid body, whose centres come last, how it is turned from its start and its
+// spin.
 function read() {
   const count = world.particles.length;
-  const state = new Float64Array(6 * count);
-  for (let i = 0; i < count; i++) {
+  const cloth = count - world.rigid.length;
+  const state = new Float64Array(6 * count + 7 * world.rigid.length);
+  world.rigid.forEach(({ made, start }, i) => {
+    const turn = made.GetRotation().MulQuat(start.Conjugated());
+    state.set(list(made.GetCenterOfMassPosition()), 3 * (cloth + i));
+    state.set(list(made.GetLinearVelocity()), 3 * (count + cloth + i));
+    state.set([turn.GetW(), turn.GetX(), turn.GetY(), turn.GetZ(), ...list(made.GetAngularVelocity())], 6 * count + 7 * i);
+  });
+  for (let i = 0; i < cloth; i++) {
     const { mPosition, mVelocity } = world.motion.GetVertex(i);
-    state.set([mPosition.GetX(), mPosition.GetY(), mPosition.GetZ()], 3 * i);
-    state.set([mVelocity.GetX(), mVelocity.GetY(), mVelocity.GetZ()], 3 * (count + i));
+    state.set(list(mPosition), 3 * i);
+    state.set(list(mVelocity), 3 * (count + i));
   }
   return Buffer.from(state.buffer);
 }
@@ -204,33 +244,44 @@ function release(particle) {
   return '';
 }
 
-function readCollider(words) {
-  const [shape, ...rest] = words;
-  const numbers = rest.map((word) => (word === 'inf' ? Infinity : Number(word)));
+const numbersOf = (words) => words.map((word) => (word === 'inf' ? Infinity : Number(word)));
+
+// The numbers that are a collider's are taken from the others.
+function takeCollider(shape, numbers) {
   const take = (count) => numbers.splice(0, count);
   const collider = { shape, point: take(3) };
   if (shape === 'plane') collider.normal = take(3);
   if (!['plane', 'sphere'].includes(shape)) Object.assign(collider, { axes: [take(3), take(3), take(3)], half: take(3) });
   if (shape !== 'plane') [collider.radius] = take(1);
-  [collider.restitution, collider.friction] = numbers;
+  [collider.restitution, collider.friction] = take(2);
   return collider;
 }
 
-const springOf = (words) => words.map((word, i) => (i === 5 ? word : word === 'inf' ? Infinity : Number(word)));
-const lists = { particles: (words) => words.map(Number), springs: springOf, colliders: readCollider };
+const readCollider = ([shape, ...words]) => takeCollider(shape, numbersOf(words));
+
+function readBody([particle, shape, ...words]) {
+  const numbers = numbersOf(words);
+  const body = takeCollider(shape, numbers);
+  return { ...body, particle: Number(particle), spin: numbers.slice(0, 3), hung: numbers.slice(7) };
+}
+
+const springOf = (words) => words.map((word, i) => (i === 5 ? word : numbersOf([word])[0]));
+const lists = {
+  particles: (words) => words.map(Number), springs: springOf, colliders: readCollider, bodies: readBody,
+};
 
 // The lines of a scene, one by one; true at its end.
 function sceneReader() {
-  const scene = { particles: [], springs: [], colliders: [], settings: {} };
-  let list = null;
+  const scene = { particles: [], springs: [], colliders: [], bodies: [], settings: {} };
+  let kind = null;
   let left = 0;
   const take = (line) => {
     const words = line.split(' ');
     if (left > 0) {
-      scene[list].push(lists[list](words));
+      scene[kind].push(lists[kind](words));
       left -= 1;
     } else if (lists[words[0]]) {
-      list = words[0];
+      kind = words[0];
       left = Number(words[1]);
     } else if (words[0] === 'setting') scene.settings[words[1]] = Number(words[2]);
     else if (['gravity', 'force'].includes(words[0])) scene[words[0]] = words.slice(1).map(Number);
@@ -244,7 +295,7 @@ const { version } = JSON.parse(readFileSync(new URL('./node_modules/jolt-physics
 
 const hello = () => `version jolt-physics ${version} float
 about Jolt's soft body: XPBD, one sweep over compliant edges in each of its iterations, which are substeps
-models springs rigid damping gravity force drag velocity plane sphere release solids
+models springs rigid damping gravity force drag velocity plane sphere release solids bodies uneven
 precision single
 positions raw
 setting substeps 1 100000 whole mNumIterations: substeps of an update (default: 50, fewer where floats end)
@@ -264,6 +315,7 @@ function answer(line) {
   if (word === 'begin') reader = sceneReader();
   else if (word === 'quit') process.exit(0);
   const answers = {
+    pace: () => { world.step = Number(argument); return ''; },
     clothcheck: () => 'clothcheck 1\n', hello, ping: () => 'ok\n', step, read, release: () => release(Number(argument)),
   };
   return answers[word] ? answers[word]() : '';

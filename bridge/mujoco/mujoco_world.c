@@ -3,6 +3,7 @@
 #include "hinges.h"
 #include "mujoco_xml.h"
 #include "path.h"
+#include "rigid.h"
 #include "scaled_model.h"
 #include "time_scale.h"
 #include "vector.h"
@@ -26,7 +27,8 @@ extern const char ck_code_mujoco[];
 static const char *const integrators[] = {"Euler", "implicit", "RK4"};
 
 typedef struct MujocoWorld {
-    ck_ScaledModel scaled; // its pins are let go there
+    ck_ScaledModel scaled;     // its pins are let go there
+    const ck_RigidBody *rigid; // of the scene: how they are turned at the start
     ck_Settings used;
     mjModel *model;
     mjData *data;
@@ -67,7 +69,9 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     if (frequency > 0) limit = fmin(limit, 1 / frequency);
     limit = fmin(limit, 1 / ck_stability_damping_rate(model));
     limit = fmin(limit, ck_stability_drag_time(model, 0.1));
-    if (model->collider_count) limit = fmin(limit, 1.0 / 1000);
+    if (model->collider_count || model->rigid_count) limit = fmin(limit, 1.0 / 1000);
+    for (int i = 0; i < model->rigid_count; i++)
+        if (model->rigid[i].shape.restitution > 0) limit = fmin(limit, model->step / (4 * CK_MUJOCO_BOUNCE_STEPS));
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].restitution > 0) limit = fmin(limit, model->step / (4 * CK_MUJOCO_BOUNCE_STEPS));
     if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
@@ -144,7 +148,7 @@ static mjModel *compile(const char *text, size_t length, char *reason, int size)
 static ck_Status load(MujocoWorld *world, ck_Error *error) {
     const ck_Model *model = &world->scaled.model;
     const ck_MujocoOptions options = {model->step / world->used.substeps, integrators[integrator_of(&world->used)],
-                                      ck_mujoco_radius(model)};
+                                      ck_mujoco_radius(model), 0};
     size_t length;
     char reason[300] = "", *text = ck_mujoco_xml(model, &options, &length);
     if (!text) return ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -166,6 +170,9 @@ static ck_Status load(MujocoWorld *world, ck_Error *error) {
             world->data->xfrc_applied[6 * world->body[i] + axis] = model->force[axis];
         }
     }
+    for (int i = 0; i < model->rigid_count; i++) // about the body's own axes, which at first are the world's
+        memcpy(world->data->qvel + world->model->body_dofadr[world->body[model->rigid[i].particle]] + 3,
+               model->rigid[i].spin, sizeof model->rigid[i].spin);
     return CK_OK;
 }
 
@@ -187,6 +194,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     MujocoWorld *world = calloc(1, sizeof *world);
     if (!world) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     world->used = *used;
+    world->rigid = model->rigid;
     world->body = calloc((size_t)model->particle_count, sizeof *world->body);
     const bool has_outer = model->terms & (CK_TERM_BENDING | CK_TERM_WIND);
     if (has_outer) world->outer = calloc(9 * (size_t)model->particle_count, sizeof(double));
@@ -208,11 +216,16 @@ static bool has_left(const mjData *data) {
            data->warning[mjWARN_BADQACC].number;
 }
 
+// Where a body's place is among all: a turn takes one number more than a spin.
+static int place_of(const MujocoWorld *world, int body) {
+    return world->model->jnt_qposadr[world->model->body_jntadr[body]];
+}
+
 static void read_units(const MujocoWorld *world, double *position, double *velocity, double unit) {
     const ck_Model *model = &world->scaled.model;
     for (int i = 0; i < 3 * model->particle_count; i++) {
         const int body = world->body[i / 3], joint = body ? world->model->body_dofadr[body] + i % 3 : 0;
-        position[i] = unit * (model->position[i] + (body ? world->data->qpos[joint] : 0));
+        position[i] = unit * (model->position[i] + (body ? world->data->qpos[place_of(world, body) + i % 3] : 0));
         velocity[i] = body ? unit * world->data->qvel[joint] : 0;
     }
 }
@@ -286,9 +299,33 @@ static ck_StepResult step(void *state) {
     return CK_STEP_OK;
 }
 
+// How soft contact is stays that of an even step.
+static void pace(void *state, double duration) {
+    MujocoWorld *world = state;
+    if (world->model) world->model->opt.timestep = duration / world->used.substeps;
+}
+
 static void read_state(const void *state, double *position, double *velocity) {
     const MujocoWorld *world = state;
     if (world->data) read_units(world, position, velocity, world->scaled.length);
+}
+
+// Where a rigid body's axes are, and its spin, rad/s.
+static void read_axes(const MujocoWorld *world, int index, double (*axes)[3], double *spin) {
+    const ck_RigidBody *rigid = &world->scaled.model.rigid[index];
+    const int body = world->body[rigid->particle];
+    const double *rotation = world->data->qpos + place_of(world, body) + 3;
+    for (int k = 0; k < 3; k++) ck_rigid_rotate(axes[k], rotation, rigid->shape.axes[k]);
+    ck_rigid_rotate(spin, rotation, world->data->qvel + world->model->body_dofadr[body] + 3);
+}
+
+static void read_turn(const void *state, ck_Turn *turn) {
+    const MujocoWorld *world = state;
+    for (int i = 0; i < world->scaled.model.rigid_count && world->data; i++) {
+        double axes[3][3];
+        read_axes(world, i, axes, turn[i].spin);
+        ck_rigid_rotation(turn[i].rotation, &world->rigid[i], axes);
+    }
 }
 
 // What is fixed to the world stays so in a compiled model: another one is made, from where everything is now.
@@ -304,6 +341,11 @@ static void release(void *state, int particle) {
         memcpy(model->velocity, now + count, count * sizeof *now);
     }
     free(now);
+    for (int i = 0; i < model->rigid_count; i++) {
+        double axes[3][3];
+        read_axes(world, i, axes, model->rigid[i].spin);
+        memcpy(model->rigid[i].shape.axes, axes, sizeof axes);
+    }
     if (!ck_driven_find(model, particle, 0)) memset(model->velocity + 3 * particle, 0, 3 * sizeof(double));
     model->pinned[particle] = false;
     if (!now || load(world, NULL)) unload(world);
@@ -350,13 +392,15 @@ const ck_Engine ck_mujoco = {
     .method = CK_METHOD_SYMPLECTIC_EULER,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
              CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |
-             CK_TERM_MOVING_COLLIDERS,
+             CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES | CK_TERM_JITTER,
     .settings = settings,
     .order = 1,
     .create = create,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
+    .turn = read_turn,
     .destroy = destroy,
     .code = code,
 };

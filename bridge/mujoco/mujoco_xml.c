@@ -2,6 +2,7 @@
 
 #include "collider.h"
 #include "path.h"
+#include "rigid.h"
 #include "vector.h"
 
 #include <math.h>
@@ -10,9 +11,13 @@
 #include <string.h>
 
 double ck_mujoco_radius(const ck_Model *model) {
-    double radius = 0.1 * model->spacing;
+    // a rigid body rolls and turns over at where its shape ends
+    const double share = model->rigid_count ? 0.01 : 0.1;
+    double radius = share * model->spacing;
     for (int i = 0; i < model->collider_count; i++)
-        radius = fmin(radius, 0.1 * ck_collider_breadth(&model->colliders[i]));
+        radius = fmin(radius, share * ck_collider_breadth(&model->colliders[i]));
+    for (int i = 0; i < model->rigid_count; i++)
+        radius = fmin(radius, share * ck_collider_breadth(&model->rigid[i].shape));
     return radius;
 }
 
@@ -62,13 +67,17 @@ static void write_moving(FILE *out, const ck_Model *model, int index) {
         fprintf(out, "<joint type=\"slide\" axis=\"%d %d %d\"/>", axis == 0, axis == 1, axis == 2);
 }
 
+// What meets what: contype of one and conaffinity of the other.
+typedef enum Meets { MEETS_PARTICLES, MEETS_BODIES, MEETS_BOTH } Meets;
+static const char *const meets[] = {"contype=\"0\" conaffinity=\"1\"", "contype=\"2\" conaffinity=\"0\"",
+                                    "contype=\"0\" conaffinity=\"3\""};
+
 // One of MuJoCo's own shapes at a place, m, with its sizes, m, and the axes of the collider.
 static void write_geom(FILE *out, const ck_Collider *collider, const ck_MujocoOptions *options, const char *type,
                        const double *at, const double *sizes, const double *zaxis) {
     const double(*axes)[3] = collider->axes;
-    fprintf(out,
-            "<geom contype=\"0\" conaffinity=\"1\" type=\"%s\" pos=\"%.17g %.17g %.17g\" size=\"%.17g %.17g %.17g\"",
-            type, at[0], at[1], at[2], sizes[0], sizes[1], sizes[2]);
+    fprintf(out, "<geom mass=\"0\" %s type=\"%s\" pos=\"%.17g %.17g %.17g\" size=\"%.17g %.17g %.17g\"",
+            meets[options->meets], type, at[0], at[1], at[2], sizes[0], sizes[1], sizes[2]);
     if (zaxis)
         fprintf(out, " zaxis=\"%.17g %.17g %.17g\"", zaxis[0], zaxis[1], zaxis[2]);
     else if (collider->shape == CK_BOX)
@@ -94,6 +103,55 @@ static void write_box(FILE *out, const ck_Collider *collider, const ck_MujocoOpt
             write_geom(out, collider, options, "capsule", at, edge, collider->axes[k]);
         }
     }
+}
+
+// A sphere or a box of MuJoCo's about a place, m, larger by so much, m.
+static void write_solid(FILE *out, const ck_Collider *solid, const double *at, const ck_MujocoOptions *options,
+                        double more) {
+    const double radius = solid->radius + more, ball[3] = {radius, 0, 0},
+                 box[3] = {solid->half[0] + radius, solid->half[1] + radius, solid->half[2] + radius};
+    ck_Collider there = *solid;
+    memcpy(there.point, at, sizeof there.point);
+    if (solid->shape == CK_SPHERE)
+        write_geom(out, &there, options, "sphere", at, ball, NULL);
+    else if (radius > 0 && solid->radius > 0)
+        write_box(out, &there, options, radius);
+    else
+        write_geom(out, &there, options, "box", at, box, NULL);
+}
+
+// A rigid body: it slides and turns. Particles, which are spheres to MuJoCo, meet a smaller shape of it, and colliders,
+// which are smaller themselves, a larger one; so do other bodies, of whose two shapes each meets the other's other.
+static void write_rigid(FILE *out, const ck_Model *model, int index, const ck_MujocoOptions *options) {
+    const ck_RigidBody *rigid = &model->rigid[index];
+    const double *at = model->position + 3 * rigid->particle, mass = model->mass[rigid->particle], none[3] = {0};
+    const double(*axes)[3] = rigid->shape.axes;
+    ck_MujocoOptions small = *options, large = *options;
+    small.meets = MEETS_BOTH;
+    large.meets = MEETS_BODIES;
+    fprintf(out,
+            "<body name=\"b%d\" pos=\"%.17g %.17g %.17g\"><inertial pos=\"0 0 0\" mass=\"%.17g\" "
+            "diaginertia=\"%.17g %.17g %.17g\" xyaxes=\"%.17g %.17g %.17g %.17g %.17g %.17g\"/>",
+            rigid->particle, at[0], at[1], at[2], mass, rigid->inertia[0], rigid->inertia[1], rigid->inertia[2],
+            axes[0][0], axes[0][1], axes[0][2], axes[1][0], axes[1][1], axes[1][2]);
+    for (int axis = 0; axis < 3; axis++)
+        fprintf(out, "<joint type=\"slide\" axis=\"%d %d %d\" damping=\"%.17g\"/>", axis == 0, axis == 1, axis == 2,
+                model->drag * mass);
+    fprintf(out, "<joint type=\"ball\"/><site name=\"s%d\"/>", rigid->particle);
+    write_solid(out, &rigid->shape, none, &small, -options->radius);
+    write_solid(out, &rigid->shape, none, &large, options->radius);
+    fprintf(out, "</body>\n");
+}
+
+// What hangs a body does not touch it.
+static void write_excludes(FILE *out, const ck_Model *model) {
+    fprintf(out, "<contact>\n");
+    for (int i = 0; i < model->rigid_count; i++)
+        for (int k = 0; k < model->rigid[i].hung_count; k++)
+            if (!model->pinned[model->rigid[i].hung[k]])
+                fprintf(out, "<exclude body1=\"b%d\" body2=\"b%d\"/>\n", model->rigid[i].particle,
+                        model->rigid[i].hung[k]);
+    fprintf(out, "</contact>\n");
 }
 
 // A plane sinks and a solid shrinks by the radius of what stands for a particle, which rounds sharp edges. A cylinder
@@ -126,11 +184,20 @@ static void write_collider(FILE *out, const ck_Model *model, int index, const ck
     fprintf(out, collider->path ? "</body>\n" : "\n");
 }
 
+// What of a particle meets solids, m from where it belongs to.
+static void write_touching(FILE *out, const ck_MujocoOptions *options, const double *at) {
+    fprintf(out,
+            "<geom type=\"sphere\" pos=\"%.17g %.17g %.17g\" size=\"%.17g\" contype=\"1\" conaffinity=\"0\" "
+            "condim=\"1\" friction=\"0 0 0\" priority=\"-1\" mass=\"0\"/>",
+            at[0], at[1], at[2], options->radius);
+}
+
 static void write_particle(FILE *out, const ck_Model *model, int particle, const ck_MujocoOptions *options) {
     const double *at = model->position + 3 * particle;
     // one that is moved is put where it belongs after every step
     if (model->pinned[particle] && !ck_driven_find(model, particle, 0)) {
         fprintf(out, "<site name=\"s%d\" pos=\"%.17g %.17g %.17g\"/>\n", particle, at[0], at[1], at[2]);
+        if (model->rigid_count) write_touching(out, options, at);
         return;
     }
     // it does not turn, so that any inertia does
@@ -144,11 +211,8 @@ static void write_particle(FILE *out, const ck_Model *model, int particle, const
         fprintf(out, "<joint type=\"slide\" axis=\"%d %d %d\" damping=\"%.17g\"/>", axis == 0, axis == 1, axis == 2,
                 model->drag * mass);
     fprintf(out, "<site name=\"s%d\"/>", particle);
-    if (model->collider_count)
-        fprintf(out,
-                "<geom type=\"sphere\" size=\"%.17g\" contype=\"1\" conaffinity=\"0\" condim=\"1\" friction=\"0 0 0\" "
-                "priority=\"-1\" mass=\"0\"/>",
-                options->radius);
+    const double none[3] = {0};
+    if (model->collider_count || model->rigid_count) write_touching(out, options, none);
     fprintf(out, "</body>\n");
 }
 
@@ -170,7 +234,7 @@ static void write_springs(FILE *out, const ck_Model *model) {
 static int most_contacts(const ck_Model *model) {
     int most = 0;
     for (int i = 0; i < model->collider_count; i++) most += model->colliders[i].shape == CK_BOX ? 6 : 1;
-    return most * model->particle_count;
+    return most * model->particle_count + 2 * (int)ck_rigid_most_touches(model);
 }
 
 int ck_mujoco_stack(const ck_Model *model, const char *integrator) {
@@ -192,10 +256,14 @@ char *ck_mujoco_xml(const ck_Model *model, const ck_MujocoOptions *options, size
             "iterations=\"100\"/>\n<size njmax=\"%d\" nconmax=\"%d\" nstack=\"%d\"/>\n<worldbody>\n",
             options->step, g[0], g[1], g[2], options->integrator, 10 + 3 * most_contacts(model),
             10 + most_contacts(model), ck_mujoco_stack(model, options->integrator));
-    for (int i = 0; i < model->collider_count; i++) write_collider(out, model, i, options);
-    for (int i = 0; i < model->particle_count; i++) write_particle(out, model, i, options);
+    ck_MujocoOptions solid = *options;
+    solid.meets = model->rigid_count ? MEETS_BOTH : MEETS_PARTICLES;
+    for (int i = 0; i < model->collider_count; i++) write_collider(out, model, i, &solid);
+    for (int i = 0; i < ck_model_cloth_count(model); i++) write_particle(out, model, i, options);
+    for (int i = 0; i < model->rigid_count; i++) write_rigid(out, model, i, options);
     fprintf(out, "</worldbody>\n");
     write_springs(out, model);
+    if (model->rigid_count) write_excludes(out, model);
     fprintf(out, "</mujoco>\n");
     // a stream in memory fails for lack of it alone
     if (fclose(out)) {

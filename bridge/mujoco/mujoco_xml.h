@@ -17,9 +17,11 @@ typedef struct ck_MujocoOptions {
     double step;            // s
     const char *integrator; // "Euler", "implicit", "RK4"
     double radius;          // m, of the geoms that stand for particles where there are colliders
+    int meets;              // what the geoms that are written meet: the writer's own
 } ck_MujocoOptions;
 
-// The radius of a particle's geom, m: a tenth of the spacing and of every ball.
+// The radius of a particle's geom, m: a tenth of the spacing and of every solid or, where there are rigid bodies, a
+// hundredth.
 double ck_mujoco_radius(const ck_Model *model);
 
 // The text and its length. A particle is a body of that number with three slide joints or, pinned, a site of the world.

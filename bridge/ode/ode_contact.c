@@ -51,19 +51,14 @@ void ck_ode_contacts_destroy(ck_OdeContacts *contacts) {
     free(contacts);
 }
 
-// The speed along the normal that the joint asks for. ODE's own bounce adds what it corrects of the depth, and gains
-// energy by it. An impact is answered once it is inside; without restitution it stops at the surface. What cannot be
-// told from rest, 2·g·h, rests.
-static double wanted_speed(const ck_Collider *collider, double gap, double speed, double rest, double pull, double h,
+double ck_ode_wanted_speed(double restitution, double gap, double speed, double rest, double pull, double h,
                            double push_speed) {
     if (gap >= 0) return -gap / h;
-    if (speed < -rest && collider->restitution > 0)
-        return ck_collider_rebound(collider->restitution, -gap, -speed, pull, h);
+    if (speed < -rest && restitution > 0) return ck_collider_rebound(restitution, -gap, -speed, pull, h);
     return fmin(PUSH_SHARE * -gap / h, push_speed);
 }
 
-// The direction along the surface in which the particle slides, or would: along any other, friction is a pyramid.
-static void slip_direction(double *slip, const double *velocity, const double *field, const double *normal, double h) {
+void ck_ode_slip_direction(double *slip, const double *velocity, const double *field, const double *normal, double h) {
     memcpy(slip, velocity, 3 * sizeof(double));
     ck_add_scaled(slip, h, field);
     ck_add_scaled(slip, -ck_dot(slip, normal), normal);
@@ -107,9 +102,9 @@ static void add_contact(ck_OdeContacts *contacts, dWorldID world, dBodyID body, 
     dContact contact = {.surface = {.mode = dContactMotionN | dContactSoftERP | dContactApprox1 | dContactFDir1,
                                     .mu = collider->friction,
                                     .soft_erp = 0,
-                                    .motionN = wanted_speed(collider, gap, speed, rest, -ck_dot(field, normal), h,
-                                                            contacts->push_speed)}};
-    slip_direction(slip, velocity, field, normal, h);
+                                    .motionN = ck_ode_wanted_speed(collider->restitution, gap, speed, rest,
+                                                                   -ck_dot(field, normal), h, contacts->push_speed)}};
+    ck_ode_slip_direction(slip, velocity, field, normal, h);
     if (ck_dot(carried, carried) > 0) {
         ck_cross(across, normal, slip);
         contact.surface.mode |= dContactMotion1 | dContactMotion2;
@@ -142,7 +137,7 @@ static void follow(ck_OdeContacts *contacts, double time) {
 
 void ck_ode_contacts_add(ck_OdeContacts *contacts, dWorldID world, const dBodyID *bodies, double time) {
     if (contacts->model->terms & CK_TERM_MOVING_COLLIDERS) follow(contacts, time);
-    for (int i = 0; i < contacts->model->particle_count; i++)
+    for (int i = 0; i < ck_model_cloth_count(contacts->model); i++)
         for (int j = 0; j < contacts->model->collider_count && !dBodyIsKinematic(bodies[i]); j++)
             add_contact(contacts, world, bodies[i], i, &contacts->now[j], contacts->carried + 3 * j);
 }

@@ -22,6 +22,15 @@ typedef struct ck_OdeContacts {
 // The most speed, m/s, that pushing a particle out of a surface gives it.
 double ck_ode_push_speed(const ck_Model *model);
 
+// The speed along the normal that the joint asks for. ODE's own bounce adds what it corrects of the depth, and gains
+// energy by it. An impact is answered once it is inside; without restitution it stops at the surface. What cannot be
+// told from rest, 2·g·h, rests.
+double ck_ode_wanted_speed(double restitution, double gap, double speed, double rest, double pull, double h,
+                           double push_speed);
+
+// The direction along the surface in which the particle slides, or would: along any other, friction is a pyramid.
+void ck_ode_slip_direction(double *slip, const double *velocity, const double *field, const double *normal, double h);
+
 // NULL in a scene without colliders. Errors: CK_NO_MEMORY.
 ck_Status ck_ode_contacts_create(ck_OdeContacts **contacts, const ck_Model *model, double h, ck_Error *error);
 void ck_ode_contacts_destroy(ck_OdeContacts *contacts);

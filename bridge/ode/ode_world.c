@@ -2,6 +2,7 @@
 #include "engine.h"
 #include "hinges.h"
 #include "ode_contact.h"
+#include "ode_rigid.h"
 #include "path.h"
 #include "scaled_model.h"
 #include "shape.h"
@@ -26,6 +27,7 @@ typedef struct OdeWorld {
     dBodyID *bodies; // [particle_count]
     double *outer;   // [3][3*particle_count] places, speeds and forces of hinges and air; NULL without
     ck_OdeContacts *contacts;
+    ck_OdeRigid *rigid;
     double dt;     // s, one substep
     uint64_t done; // substeps
     uint32_t substeps;
@@ -64,7 +66,7 @@ static double constraint_force_mixing(const ck_Model *model, const ck_Spring *sp
 
 // With contact that may be on every particle, of three rows each with friction.
 static int row_count(const ck_Model *model) {
-    int rows = 0;
+    int rows = (3 * ck_model_cloth_count(model) + 24) * model->rigid_count;
     for (int i = 0; i < model->collider_count; i++)
         rows += model->particle_count * (model->colliders[i].friction > 0 ? 3 : 1);
     for (int i = 0; i < model->spring_count; i++)
@@ -151,6 +153,7 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
 static void destroy(void *state) {
     OdeWorld *ode = state;
     ck_ode_contacts_destroy(ode->contacts);
+    ck_ode_rigid_destroy(ode->rigid);
     ck_scaled_model_free(&ode->scaled);
     if (ode->joints) dJointGroupDestroy(ode->joints);
     if (ode->world) dWorldDestroy(ode->world);
@@ -179,14 +182,19 @@ static void add_bodies(OdeWorld *ode) {
     }
 }
 
+static void set_joint(const OdeWorld *ode, dJointID joint, const ck_Spring *spring) {
+    dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt, &ode->used));
+    dJointSetDBallParam(joint, dParamCFM,
+                        constraint_force_mixing(ode->model, spring, ode->dt, &ode->used, ode->scaled.mass));
+}
+
 static void add_joint(OdeWorld *ode, const ck_Spring *spring) {
     dJointID joint = dJointCreateDBall(ode->world, ode->joints);
     dJointAttach(joint, ode->bodies[spring->a], ode->bodies[spring->b]);
     // after attaching, which takes the current length for the rest length
     dJointSetDBallDistance(joint, spring->rest);
-    dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt, &ode->used));
-    dJointSetDBallParam(joint, dParamCFM,
-                        constraint_force_mixing(ode->model, spring, ode->dt, &ode->used, ode->scaled.mass));
+    set_joint(ode, joint, spring);
+    dJointSetData(joint, (void *)spring);
 }
 
 // Springs between two pins do nothing, until one of them is let go.
@@ -217,6 +225,7 @@ static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *u
     if (ode->world) ode->joints = dJointGroupCreate(0);
     ck_Status status = ode->joints ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_ode_contacts_create(&ode->contacts, model, ode->dt, error);
+    if (!status) status = ck_ode_rigid_create(&ode->rigid, model, ode->dt, error);
     if (status) {
         destroy(ode);
         return status;
@@ -228,6 +237,7 @@ static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *u
     if (quick) dWorldSetQuickStepNumIterations(ode->world, (int)used->iterations);
     if (quick) dWorldSetQuickStepW(ode->world, used->relaxation);
     add_bodies(ode);
+    ck_ode_rigid_shape(model, ode->bodies);
     for (int i = 0; i < model->spring_count; i++)
         if (!(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]))
             add_joint(ode, &model->springs[i]);
@@ -305,13 +315,32 @@ static ck_StepResult step(void *state) {
         if (ode->outer) add_outer(ode);
         if (ode->contacts)
             ck_ode_contacts_add(ode->contacts, ode->world, ode->bodies, ((double)ode->done - 1) * ode->dt);
+        if (ode->rigid) ck_ode_rigid_add(ode->rigid, ode->world, ode->bodies, ode->contacts);
         // QuickStep shuffles its rows from a seed that is global to the process
         dRandSetSeed(1);
         int done = ode->quick ? dWorldQuickStep(ode->world, ode->dt) : dWorldStep(ode->world, ode->dt);
         if (!done) return CK_STEP_NO_MEMORY;
+        if (ode->rigid) ck_ode_rigid_remove(ode->rigid, ode->contacts);
         if (ode->contacts) ck_ode_contacts_remove(ode->contacts);
     }
     return is_safe(ode) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+// The springs' softness, drag and contact go by the substep.
+static void pace(void *state, double duration) {
+    OdeWorld *ode = state;
+    ode->dt = duration / ode->substeps;
+    if (ode->contacts) ode->contacts->h = ode->dt;
+    if (ode->rigid) ode->rigid->h = ode->dt;
+    for (int i = 0; i < ode->model->particle_count; i++) {
+        const dBodyID body = ode->bodies[i];
+        if (!dBodyIsKinematic(body)) dBodySetLinearDamping(body, ode->model->drag * ode->dt);
+        for (int k = 0; k < dBodyGetNumJoints(body); k++) {
+            const ck_Spring *spring = dJointGetData(dBodyGetJoint(body, k));
+            // each once: from its first end
+            if (spring && spring->a == i) set_joint(ode, dBodyGetJoint(body, k), spring);
+        }
+    }
 }
 
 static void read_state(const void *state, double *position, double *velocity) {
@@ -328,6 +357,11 @@ static void read_contact(const void *state, double *force) {
     double unit = ode->scaled.mass * ode->scaled.length;
     for (int axis = 0; axis < 3; axis++)
         force[axis] = ode->contacts ? unit * ode->contacts->impulse[axis] / ode->model->step : 0;
+}
+
+static void read_turn(const void *state, ck_Turn *turn) {
+    const OdeWorld *ode = state;
+    ck_ode_rigid_turns(ode->model, ode->bodies, turn);
 }
 
 extern const char ck_code_ode[];
@@ -361,7 +395,7 @@ static ck_Status code_direct(ck_Code *out, const ck_ScaledModel *scaled, const c
 #define ODE_TERMS                                                                                                      \
     (CK_TERM_SPRINGS | CK_TERM_RIGID | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG |              \
      CK_TERM_VELOCITY | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_MOVES |         \
-     CK_TERM_MOVING_COLLIDERS)
+     CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES | CK_TERM_JITTER)
 
 static const ck_Setting quick_settings[] = {
     {.name = "substeps",
@@ -446,9 +480,11 @@ const ck_Engine ck_ode_quick = {
     .order = 1,
     .create = create_quick,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = read_contact,
+    .turn = read_turn,
     .destroy = destroy,
     .code = code_quick,
 };
@@ -464,9 +500,11 @@ const ck_Engine ck_ode_direct = {
     .order = 1,
     .create = create_direct,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = read_contact,
+    .turn = read_turn,
     .destroy = destroy,
     .code = code_direct,
 };

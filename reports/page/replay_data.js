@@ -28,20 +28,23 @@ function positionsOf(codes, least, largest) {
 const solidKinds = ["sphere", "capsule", "cylinder", "box"];
 
 function parseHeader(text) {
-	const header = { paths: [], planes: [], solids: [] };
+	const header = { paths: [], planes: [], solids: [], bodies: [] };
 	let last = [];
 	for (const line of text.split("\n")) {
 		const [key, ...words] = line.split(" ");
 		if (key === "path") header.paths.push(words[0]);
 		else if (key === "plane") header.planes.push(last = words.map(Number));
 		else if (solidKinds.includes(key)) header.solids.push(last = Object.assign(words.map(Number), { shape: key }));
+		else if (key === "body") header.bodies.push(words.map(Number));
 		else if (key === "moves") last.moves = words.map(Number);
 		else if (["columns", "particles", "springs", "triangles", "frames"].includes(key)) header[key] = Number(words[0]);
 	}
+	// behind the cloth's particles each rigid body has its centre, and behind these the tips of its first two axes
+	header.cloth = header.particles - 3 * header.bodies.length;
 	return header;
 }
 
-// {columns, particles, planes, solids, times, springs, rests, triangles, paths: Map of name to positions}
+// {columns, particles, cloth, planes, solids, bodies, times, springs, rests, triangles, paths: Map of name to positions}
 function parseReplay(buffer) {
 	const bytes = new Uint8Array(buffer);
 	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 20));

@@ -10,8 +10,8 @@ function strainColor(share, out, at) {
 
 // A mesh's own triangles, and two for each square of a cloth.
 function bodyTriangles(replay) {
-	const { columns, particles } = replay, triangles = [...replay.triangles];
-	for (let i = 0; columns > 1 && i + columns + 1 < particles; i++) {
+	const { columns, cloth } = replay, triangles = [...replay.triangles];
+	for (let i = 0; columns > 1 && i + columns + 1 < cloth; i++) {
 		if (i % columns === columns - 1) continue;
 		triangles.push(i, i + columns, i + 1, i + 1, i + columns, i + columns + 1);
 	}
@@ -30,19 +30,37 @@ function bodyGeometry(replay, positions, colors, index) {
 
 // What of a body is drawn as lines: all its springs, and of a cloth, whose truth it is, every third row and column.
 function lineEnds(replay) {
-	const { columns, particles, springs } = replay;
-	const lastRow = columns ? particles / columns - 1 : 0;
+	const { columns, cloth, springs } = replay;
+	const lastRow = columns ? cloth / columns - 1 : 0;
 	const isKept = (place, last) => place % 3 === 0 || place === last;
 	const kept = [];
 	for (let i = 0; i < springs.length; i += 2) {
 		const row = Math.floor(springs[i] / columns), column = springs[i] % columns;
 		const isAcross = springs[i + 1] === springs[i] + 1;
-		if (!columns || (isAcross ? isKept(row, lastRow) : isKept(column, columns - 1))) kept.push(springs[i], springs[i + 1]);
+		if (!columns || springs[i + 1] >= cloth || (isAcross ? isKept(row, lastRow) : isKept(column, columns - 1))) kept.push(springs[i], springs[i + 1]);
 	}
 	return kept;
 }
 
-// {group, positions, colors}: changed by showBody. A cloth is a surface, its truth and all other bodies are lines: many
+// A rigid body, of its radius and half its core.
+function makeRigid([radius, ...half]) {
+	const isSphere = half.every((side) => side === 0);
+	const geometry = isSphere ? new THREE.SphereGeometry(0.99 * radius, 16, 12)
+		: new THREE.BoxGeometry(...half.map((side) => 2 * (side + radius)), 2, 2, 2);
+	return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x555555, wireframe: true, transparent: true, opacity: 0.6 }));
+}
+
+// Where its centre and the tips of its axes say.
+function placeRigid(replay, mesh, index, at) {
+	const point = (particle) => new THREE.Vector3(...at.slice(3 * particle, 3 * particle + 3));
+	const tip = replay.cloth + replay.bodies.length + 2 * index;
+	mesh.position.copy(point(replay.cloth + index));
+	const [x, y] = [tip, tip + 1].map((particle) => point(particle).sub(mesh.position).normalize());
+	const z = x.clone().cross(y).normalize();
+	mesh.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(x, z.clone().cross(x), z));
+}
+
+// {group, positions, colors, rigid}: changed by showBody. A cloth is a surface, its truth and all other bodies are lines: many
 // lines are what drawing without a graphics processor spends its time on.
 function makeBody(replay, ghost) {
 	const positions = new THREE.BufferAttribute(new Float32Array(3 * replay.particles), 3);
@@ -58,16 +76,21 @@ function makeBody(replay, ghost) {
 	}
 	if (replay.springs.length && !isSurface)
 		group.add(new THREE.LineSegments(bodyGeometry(replay, positions, colors, lineEnds(replay)), new THREE.LineBasicMaterial(look)));
-	if (replay.particles <= 64)
-		group.add(new THREE.Points(bodyGeometry(replay, positions, colors), new THREE.PointsMaterial({ ...look, size: ghost ? 14 : 8, sizeAttenuation: false })));
-	return { group, positions, colors };
+	if (replay.cloth <= 64) {
+		const dots = bodyGeometry(replay, positions, colors);
+		dots.setDrawRange(0, replay.cloth);
+		group.add(new THREE.Points(dots, new THREE.PointsMaterial({ ...look, size: ghost ? 14 : 8, sizeAttenuation: false })));
+	}
+	const rigid = replay.bodies.map(makeRigid);
+	for (const body of rigid) group.add(body);
+	return { group, positions, colors, rigid };
 }
 
 // Darkens what turns away from a light beside the camera's first place, so that folds show.
 function shadeCloth(replay, at, colors) {
-	const { columns, particles } = replay;
-	for (let i = 0; columns > 1 && i < particles; i++) {
-		const across = i % columns === columns - 1 ? i - 1 : i, down = i + columns < particles ? i : i - columns;
+	const { columns, cloth } = replay;
+	for (let i = 0; columns > 1 && i < cloth; i++) {
+		const across = i % columns === columns - 1 ? i - 1 : i, down = i + columns < cloth ? i : i - columns;
 		const [ax, ay, az] = [0, 1, 2].map((axis) => at[3 * (across + 1) + axis] - at[3 * across + axis]);
 		const [dx, dy, dz] = [0, 1, 2].map((axis) => at[3 * (down + columns) + axis] - at[3 * down + axis]);
 		const nx = ay * dz - az * dy, ny = az * dx - ax * dz, nz = ax * dy - ay * dx;
@@ -85,6 +108,7 @@ function paintBody(replay, body, strains, range, engine) {
 		strainsAt(replay, body.positions.array, strains);
 		for (let i = 0; i < replay.particles; i++) strainColor(strains[i] / range, out, 3 * i);
 	}
+	for (const { material } of body.rigid) material.color.set(engine || 0x555555);
 	shadeCloth(replay, body.positions.array, out);
 	body.colors.needsUpdate = true;
 }
@@ -94,6 +118,7 @@ function showBody(replay, body, path, time) {
 	positionsAt(replay, path, time, body.positions.array);
 	body.group.visible = !body.positions.array.some(Number.isNaN);
 	body.positions.needsUpdate = true;
+	body.rigid.forEach((mesh, index) => placeRigid(replay, mesh, index, body.positions.array));
 	return body.group.visible;
 }
 

@@ -2,6 +2,7 @@
 
 #include "files.h"
 #include "path.h"
+#include "rigid.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -14,9 +15,14 @@
 #define MOST_FRAMES 61
 #define MOST_BYTES ((size_t)4 << 20)
 
+// A rigid body is its centre and, behind all particles, the tips of its first two axes, which tell how it is turned.
+static int drawn_particles(const ck_Model *model) {
+    return model->particle_count + 2 * model->rigid_count;
+}
+
 // The frames that are kept: every stride-th, and the last.
 static int find_stride(const ck_Model *model, int paths) {
-    size_t frame_bytes = (size_t)paths * (size_t)model->particle_count * 3 * sizeof(float);
+    size_t frame_bytes = (size_t)paths * (size_t)drawn_particles(model) * 3 * sizeof(float);
     size_t most = MOST_BYTES / frame_bytes;
     if (most > MOST_FRAMES) most = MOST_FRAMES;
     if (most < 2) most = 2;
@@ -69,7 +75,7 @@ static void write_header(FILE *file, const ck_Comparison *comparison, int frames
     fprintf(file,
             "clothcheck replay 1\nscene %s\ncolumns %d\nparticles %d\nsprings %d\ntriangles %d\nframes %d\n"
             "paths %d\n",
-            model->name, model->columns, model->particle_count, springs, model->triangle_count, frames, paths);
+            model->name, model->columns, drawn_particles(model), springs, model->triangle_count, frames, paths);
     for (int i = 0; i < stay; i++) fprintf(file, "path %.*s\n", (int)strcspn(names[i], "\n"), names[i]);
     for (int i = 0; i < comparison->run_count; i++)
         if (comparison->runs[i].trajectory.frame_count > 0)
@@ -84,6 +90,10 @@ static void write_header(FILE *file, const ck_Comparison *comparison, int frames
         else
             write_solid(file, model, collider);
         if (collider->path) write_motion(file, model, collider->path);
+    }
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_Collider *shape = &model->rigid[i].shape;
+        fprintf(file, "body %g %g %g %g\n", shape->radius, shape->half[0], shape->half[1], shape->half[2]);
     }
     fprintf(file, "data\n");
 }
@@ -107,6 +117,22 @@ static void write_body(FILE *file, const ck_Model *model) {
     }
 }
 
+static void write_tips(FILE *file, const ck_Model *model, const ck_Trajectory *path, int frame) {
+    const double none[4] = {1, 0, 0, 0};
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_RigidBody *rigid = &model->rigid[i];
+        if (frame >= path->frame_count) {
+            for (int k = 0; k < 6; k++) write_float(file, NAN);
+            continue;
+        }
+        const double *center = ck_trajectory_position(path, frame) + 3 * rigid->particle;
+        const double *rotation = ck_trajectory_turn(path, frame)[i].rotation;
+        // who does not tell how it turns has it unturned
+        const ck_Collider now = ck_rigid_place(rigid, center, isnan(rotation[0]) ? none : rotation);
+        for (int k = 0; k < 6; k++) write_float(file, center[k % 3] + model->spacing * now.axes[k / 3][k % 3]);
+    }
+}
+
 // A truth at rest has a single frame, which stands for all times.
 static void write_path(FILE *file, const ck_Model *model, const ck_Trajectory *path, bool is_static, int stride,
                        int frames) {
@@ -114,6 +140,7 @@ static void write_path(FILE *file, const ck_Model *model, const ck_Trajectory *p
         int frame = is_static ? 0 : kept_frame(model, stride, i);
         for (int k = 0; k < 3 * model->particle_count; k++)
             write_float(file, frame < path->frame_count ? ck_trajectory_position(path, frame)[k] : NAN);
+        write_tips(file, model, path, frame);
     }
 }
 
@@ -177,7 +204,7 @@ static void write_joined(FILE *file, const ck_Comparison *comparison, const ck_R
 ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, ck_Error *error) {
     ck_Replay old = {0};
     joins = joins && !ck_replay_read(&old, directory, comparison->model.name, NULL) &&
-            old.particle_count == comparison->model.particle_count &&
+            old.particle_count == drawn_particles(&comparison->model) &&
             old.path_count + comparison->run_count <= CK_REPLAY_MAX_PATHS;
     char *folder = ck_path_join(directory, CK_REPLAY_DIRECTORY), *name = ck_replay_name(comparison->model.name);
     ck_WholeFile whole = {0};

@@ -212,8 +212,9 @@ void ck_code_fill(FILE *out, const ck_Code *code) {
 }
 
 bool ck_code_knows(const ck_Engine *engine, const ck_Model *model) {
-    const unsigned beyond =
-        CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS | CK_TERM_SOLIDS;
+    const unsigned beyond = CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
+                            CK_TERM_MOVING_COLLIDERS | CK_TERM_SOLIDS | CK_TERM_BODIES | CK_TERM_JITTER |
+                            CK_TERM_CHANGES;
     return engine->code && !(model->terms & beyond);
 }
 
@@ -224,8 +225,8 @@ ck_Status ck_code_write(FILE *out, const ck_Engine *engine, const ck_Model *mode
     if (!engine->code) return ck_fail(error, CK_BAD_INPUT, "%s has no program to paste", engine->name);
     if (!ck_code_knows(engine, model))
         return ck_fail(error, CK_BAD_INPUT,
-                       "%s: the programs to paste know no bending, no wind, no slack springs, no solids but balls and "
-                       "nothing that moves; "
+                       "%s: the programs to paste know no bending, no wind, no slack springs, no solids but balls, no "
+                       "rigid bodies, no uneven steps and nothing that moves; "
                        "leave them out",
                        model->name);
     ck_Status status = ck_scaled_model_create(&scaled, model);

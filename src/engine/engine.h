@@ -67,14 +67,19 @@ typedef struct ck_Engine {
     // Errors: CK_REFUSED with a reason, CK_NO_MEMORY. *state is only set on success.
     ck_Status (*create)(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error);
-    // Advances by one frame (model->step). Callers use ck_engine_advance, which lets due pins go first.
+    // Advances by one frame (model->step), or what pace has set. Callers use ck_engine_advance, which lets due pins go
+    // first.
     ck_StepResult (*step)(void *state);
+    // Sets how long the next steps are, s, at most model->step, each of as many substeps. NULL: it takes frames alone.
+    void (*pace)(void *state, double duration);
     // Position and velocity at the same time, in the model's particle order: [3*n] m, [3*n] m/s.
     void (*read)(const void *state, double *position, double *velocity);
     // Lets a pinned particle go, at rest, or with the speed that it is moved with. NULL where the engine cannot.
     void (*release)(void *state, int particle);
     // The mean force of all colliders on the body over the last frame, [3] N. NULL where the engine does not tell.
     void (*contact)(const void *state, double *force);
+    // How its rigid bodies are turned, [rigid_count]. NULL where the engine does not tell.
+    void (*turn)(const void *state, ck_Turn *turn);
     // A literal that a reader of the result must know, such as that a speed was clamped; NULL: nothing. May be NULL.
     const char *(*remark)(const void *state);
     void (*destroy)(void *state);
@@ -96,7 +101,8 @@ const ck_Setting *ck_engine_setting(const ck_Engine *engine, int slot);
 // True where the model has a term that the engine lacks.
 bool ck_engine_lacks(const ck_Engine *engine, const ck_Model *model);
 
-// Lets go the pins that are due at this frame, then advances by one. The first frame is 0.
+// Lets go the pins that are due at this frame, then advances by one, in the steps that it comes in. The first frame is
+// 0.
 ck_StepResult ck_engine_advance(const ck_Engine *engine, void *state, const ck_Model *model, int frame);
 
 // Reads a frame: positions, velocities and, where there are colliders, their force; NaN where the engine does not tell.

@@ -16,7 +16,7 @@ extern "C" {
 
 // Raised where the interface changes.
 #ifndef CK_PLUGIN_VERSION
-#define CK_PLUGIN_VERSION 4
+#define CK_PLUGIN_VERSION 5
 #endif
 
 typedef struct ck_Plugin {

@@ -15,6 +15,12 @@ static void divide(double *values, int count, double by) {
     for (int i = 0; i < count; i++) values[i] /= by;
 }
 
+static void scale_collider(ck_Collider *collider, double unit) {
+    divide(collider->point, 3, unit);
+    divide(&collider->radius, 1, unit);
+    divide(collider->half, 3, unit);
+}
+
 static void scale_lengths(ck_Model *model, double unit) {
     divide(model->position, 3 * model->particle_count, unit);
     divide(model->velocity, 3 * model->particle_count, unit);
@@ -34,10 +40,10 @@ static void scale_lengths(ck_Model *model, double unit) {
         divide(model->paths[i].vector, 3, unit);
         for (int j = 0; j < model->paths[i].point_count; j++) divide(model->paths[i].points[j] + 1, 3, unit);
     }
-    for (int i = 0; i < model->collider_count; i++) {
-        divide(model->colliders[i].point, 3, unit);
-        divide(&model->colliders[i].radius, 1, unit);
-        divide(model->colliders[i].half, 3, unit);
+    for (int i = 0; i < model->collider_count; i++) scale_collider(&model->colliders[i], unit);
+    for (int i = 0; i < model->rigid_count; i++) {
+        scale_collider(&model->rigid[i].shape, unit);
+        divide(model->rigid[i].inertia, 3, unit * unit);
     }
 }
 
@@ -50,6 +56,7 @@ static void scale_masses(ck_Model *model, double unit) {
         divide(&model->springs[i].damping, 1, unit);
     }
     for (int i = 0; i < model->hinge_count; i++) divide(&model->hinges[i].stiffness, 1, unit);
+    for (int i = 0; i < model->rigid_count; i++) divide(model->rigid[i].inertia, 3, unit);
 }
 
 // The power of two at or below a number.
@@ -96,9 +103,11 @@ ck_Status ck_scaled_model_create(ck_ScaledModel *scaled, const ck_Model *model) 
     own->springs = copy_of(model->springs, (size_t)model->spring_count, sizeof(ck_Spring));
     own->hinges = copy_of(model->hinges, (size_t)model->hinge_count, sizeof(ck_Hinge));
     own->colliders = copy_of(model->colliders, (size_t)model->collider_count, sizeof(ck_Collider));
+    // the nodes that bodies hang on stay those of the model
+    own->rigid = copy_of(model->rigid, (size_t)model->rigid_count, sizeof(ck_RigidBody));
     const bool has_paths = copy_paths(own, model);
     if (!has_paths || !own->position || !own->velocity || !own->mass || !own->pinned || !own->springs || !own->hinges ||
-        !own->colliders) {
+        !own->colliders || !own->rigid) {
         ck_scaled_model_free(scaled);
         return CK_NO_MEMORY;
     }
@@ -128,5 +137,6 @@ void ck_scaled_model_free(ck_ScaledModel *scaled) {
     free(scaled->model.springs);
     free(scaled->model.hinges);
     free(scaled->model.colliders);
+    free(scaled->model.rigid);
     *scaled = (ck_ScaledModel){0};
 }

@@ -26,6 +26,11 @@ static void read_state(const void *state, double *position, double *velocity) {
     memcpy(velocity, model->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
 }
 
+static void turn(const void *state, ck_Turn *turn) {
+    const ck_Model *model = state;
+    for (int i = 0; i < model->rigid_count; i++) turn[i] = ck_rigid_start(&model->rigid[i]);
+}
+
 static void destroy(void *state) {
     (void)state;
 }
@@ -40,5 +45,6 @@ const ck_Engine ck_still = {
     .create = create,
     .step = step,
     .read = read_state,
+    .turn = turn,
     .destroy = destroy,
 };

@@ -1,5 +1,7 @@
 #include "export.h"
 
+#include "vector.h"
+
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
@@ -131,12 +133,52 @@ static json_t *collider_of(const ck_Collider *collider) {
     return NULL;
 }
 
+static json_t *rigid_of(const ck_Model *model, const ck_RigidBody *rigid) {
+    const double *velocity = model->velocity + 3 * rigid->particle;
+    json_t *body = shape_of(&rigid->shape), *hang = rigid->hung_count ? json_array() : NULL;
+    bool is_whole = body && !json_object_set_new(body, "mass", json_real(model->mass[rigid->particle]));
+    if (is_whole && (velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0))
+        is_whole = !json_object_set_new(body, "velocity", vector_of(velocity));
+    if (is_whole && (rigid->spin[0] != 0 || rigid->spin[1] != 0 || rigid->spin[2] != 0))
+        is_whole = !json_object_set_new(body, "spin", vector_of(rigid->spin));
+    for (int i = 0; i < rigid->hung_count && is_whole; i++)
+        is_whole = !json_array_append_new(hang, json_integer(rigid->hung[i]));
+    if (is_whole && hang) is_whole = !json_object_set(body, "hang", hang);
+    json_decref(hang);
+    if (is_whole) return body;
+    json_decref(body);
+    return NULL;
+}
+
+static int cloth_springs(const ck_Model *model) {
+    int count = model->spring_count;
+    for (int i = 0; i < model->rigid_count; i++) count -= model->rigid[i].hung_count;
+    return count;
+}
+
+// The springs that bodies hang on, which are alike.
+static void put_hanging(Writer *writer, const ck_Model *model) {
+    if (cloth_springs(model) == model->spring_count) return;
+    const ck_Spring *spring = &model->springs[model->spring_count - 1];
+    const double length = ck_distance(model->position + 3 * spring->a, model->position + 3 * spring->b);
+    const bool is_rigid = isinf(spring->stiffness);
+    json_t *springs = is_rigid ? json_pack("{s:b}", "rigid", 1)
+                               : json_pack("{s:f, s:f}", "stiffness", spring->stiffness, "damping", spring->damping);
+    bool is_whole = springs != NULL;
+    if (length != spring->rest && is_whole)
+        is_whole = !json_object_set_new(springs, "prestretch", json_real(length / spring->rest - 1));
+    if (spring->pulls_only && is_whole) is_whole = !json_object_set_new(springs, "pull_only", json_true());
+    writer->has_failed |= !is_whole;
+    put(writer, ",\n\"springs\": ", springs, "");
+}
+
 static void put_network(Writer *writer, const ck_Model *model) {
     put(writer, "\"network\": {\"size\": ", json_real(model->size), ", ");
     put(writer, "\"spacing\": ", json_real(model->spacing), ",\n \"nodes\": [");
-    for (int i = 0; i < model->particle_count; i++) put(writer, i ? ",\n  " : "\n  ", node_of(model, i), "");
+    for (int i = 0; i < ck_model_cloth_count(model); i++) put(writer, i ? ",\n  " : "\n  ", node_of(model, i), "");
     fprintf(writer->out, "],\n \"springs\": [");
-    for (int i = 0; i < model->spring_count; i++) put(writer, i ? ",\n  " : "\n  ", spring_of(&model->springs[i]), "");
+    // those that bodies hang on come last, and are said there
+    for (int i = 0; i < cloth_springs(model); i++) put(writer, i ? ",\n  " : "\n  ", spring_of(&model->springs[i]), "");
     // air needs the faces of a cloth, too
     const int(*faces)[3] =
         model->triangle_count ? (const int(*)[3])model->triangles : (const int(*)[3])model->wind.faces;
@@ -207,6 +249,10 @@ static void put_fields(Writer *writer, const ck_Model *model) {
             json_pack("{s:o, s:f, s:f, s:f}", "velocity", vector_of(model->wind.velocity), "density",
                       model->wind.density, "drag", model->wind.drag, "lift", model->wind.lift),
             "");
+    for (int i = 0; i < model->rigid_count; i++)
+        put(writer, i ? ",\n  " : ",\n\"bodies\": [\n  ", rigid_of(model, &model->rigid[i]),
+            i + 1 == model->rigid_count ? "]" : "");
+    put_hanging(writer, model);
     put_moves(writer, model);
     put_releases(writer, model);
     put(writer, ",\n\"time\": ", json_pack("{s:f, s:f}", "duration", model->duration, "step", model->step), "");
@@ -317,9 +363,9 @@ static void write_moves(FILE *out, const ck_Model *model) {
     }
 }
 
-// Its place, then its normal or its axes and half its core along them, then its radius, restitution and friction.
-static void write_collider(FILE *out, const ck_Collider *collider) {
-    double numbers[20];
+// Its place, then its normal or its axes and half its core along them, then its radius, restitution and friction: into
+// [20]. Returns how many.
+static int collider_numbers(double *numbers, const ck_Collider *collider) {
     int count = 3;
     memcpy(numbers, collider->point, sizeof collider->point);
     if (collider->shape == CK_PLANE) {
@@ -333,7 +379,30 @@ static void write_collider(FILE *out, const ck_Collider *collider) {
     if (collider->shape != CK_PLANE) numbers[count++] = collider->radius;
     numbers[count++] = collider->restitution;
     numbers[count++] = collider->friction;
-    line(out, ck_shape_names[collider->shape], numbers, count);
+    return count;
+}
+
+static void write_collider(FILE *out, const ck_Collider *collider) {
+    double numbers[20];
+    line(out, ck_shape_names[collider->shape], numbers, collider_numbers(numbers, collider));
+}
+
+// Each the particle of its centre and what a collider is, and then its spin, its moments of inertia about its axes, and
+// how many particles and which it hangs on.
+static void write_bodies(FILE *out, const ck_Model *model) {
+    if (model->rigid_count) fprintf(out, "bodies %d\n", model->rigid_count);
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_RigidBody *rigid = &model->rigid[i];
+        double numbers[20 + 6];
+        const int count = collider_numbers(numbers, &rigid->shape);
+        memcpy(numbers + count, rigid->spin, sizeof rigid->spin);
+        memcpy(numbers + count + 3, rigid->inertia, sizeof rigid->inertia);
+        fprintf(out, "%d %s", rigid->particle, ck_shape_names[rigid->shape.shape]);
+        for (int k = 0; k < count + 6; k++) fprintf(out, " %.17g", numbers[k]);
+        fprintf(out, " %d", rigid->hung_count);
+        for (int k = 0; k < rigid->hung_count; k++) fprintf(out, " %d", rigid->hung[k]);
+        fprintf(out, "\n");
+    }
 }
 
 static void write_colliders(FILE *out, const ck_Model *model) {
@@ -367,4 +436,5 @@ void ck_export_lines(FILE *out, const ck_Model *model) {
     write_wind(out, &model->wind);
     write_moves(out, model);
     write_colliders(out, model);
+    write_bodies(out, model);
 }

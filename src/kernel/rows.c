@@ -21,7 +21,7 @@ static bool joins_neighbours(const ck_Spring *spring, int columns) {
 bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs) {
     *springs = (ck_RowSprings){0};
     if (model->body != CK_CLOTH || !model->spring_count || model->hinge_count || model->wind.face_count ||
-        model->driven_count)
+        model->driven_count || model->rigid_count || model->jitter > 0)
         return false;
     for (int i = 1; i < model->particle_count; i++)
         if (model->mass[i] != model->mass[0]) return false;

@@ -32,11 +32,22 @@ static double sag_at(const ck_Model *model, const ck_Trajectory *trajectory, int
     double down[3], top = INFINITY, bottom = -INFINITY;
     if (!fall_direction(model, down)) return NAN;
     const double *position = ck_trajectory_position(trajectory, frame);
-    for (int i = 0; i < model->particle_count; i++) {
+    for (int i = 0; i < ck_model_cloth_count(model); i++) {
         if (model->pinned[i] || !model->pin_count) top = fmin(top, ck_dot(model->position + 3 * i, down));
         if (!ck_model_is_held(model, i)) bottom = fmax(bottom, ck_dot(position + 3 * i, down));
     }
     return isfinite(bottom) ? (bottom - top) / model->size : NAN;
+}
+
+// How far the first rigid body's centre has fallen below its start / size.
+static double body_drop_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
+                           const ck_Reference *reference) {
+    (void)reference;
+    double down[3], way[3];
+    if (!model->rigid_count || !fall_direction(model, down)) return NAN;
+    const int particle = model->rigid[0].particle;
+    ck_subtract(way, ck_trajectory_position(trajectory, frame) + 3 * particle, model->position + 3 * particle);
+    return ck_dot(way, down) / model->size;
 }
 
 static double stretch_max_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
@@ -110,6 +121,16 @@ static Momentum momentum_at(const ck_Model *model, const ck_Trajectory *trajecto
         ck_add_scaled(sum.angular, model->mass[i], turn);
         sum.linear_scale += model->mass[i] * ck_length(v);
         sum.angular_scale += model->mass[i] * ck_length(turn);
+    }
+    const ck_Turn *turns = ck_trajectory_turn(trajectory, frame);
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_RigidBody *rigid = &model->rigid[i];
+        const ck_Collider now =
+            ck_rigid_place(rigid, ck_trajectory_position(trajectory, frame) + 3 * rigid->particle, turns[i].rotation);
+        double own[3];
+        ck_rigid_momentum(own, rigid, &now, turns[i].spin);
+        ck_add_scaled(sum.angular, 1, own);
+        sum.angular_scale += ck_length(own);
     }
     return sum;
 }
@@ -241,6 +262,9 @@ static const ck_Metric metrics[] = {
     {"sag_peak", "1", "Largest drop of a free particle of the whole run / size", CK_TRUTH_OF_STATE, .peak = sag_at},
     {"tension_peak", "N", "Largest pull of a spring of the whole run, by the scene's stiffness", CK_TRUTH_OF_STATE,
      .peak = ck_metric_tension_at},
+    {"body_drop", "1", "How far the first rigid body's centre is below its start at the end / size", CK_TRUTH_OF_STATE,
+     .at = body_drop_at},
+    {"body_drop_peak", "1", "The same of the whole run: the largest", CK_TRUTH_OF_STATE, .peak = body_drop_at},
     {"pin_force", "1", "Force of springs and hinges on the pins at the end / weight", CK_TRUTH_OF_STATE,
      .at = ck_metric_pin_force_at},
     {"pin_force_peak", "1", "Largest force on the pins of the whole run / weight", CK_TRUTH_OF_STATE,

@@ -72,4 +72,8 @@ double ck_metric_still_speed(const ck_Model *model);
 // True for a path that is below that speed for its last twentieth.
 bool ck_metric_comes_to_rest(const ck_Model *model, const ck_Trajectory *trajectory);
 
+// The smallest gap of rigid bodies to cloth, colliders and one another at a frame, m; INFINITY without any, or without
+// memory.
+double ck_metric_rigid_gap(const ck_Model *model, const ck_Trajectory *trajectory, int frame);
+
 #endif

@@ -1,6 +1,7 @@
 #include "runner.h"
 
 #include "process.h"
+#include "session.h"
 #include "statistics.h"
 
 #include <math.h>
@@ -28,14 +29,14 @@ typedef struct Job {
     const ck_Limits *limits;
 } Job;
 
-static void *create(const Job *job) {
-    void *state = NULL;
+// False where the engine does not take the scene.
+static bool begin(const Job *job, ck_Session *session) {
     Report *report = job->report;
     report->ledger.count = 0;
-    report->status = ck_engine_create(job->run->engine, &state, job->run->model, &job->run->wanted, &report->used,
+    report->status = ck_session_begin(session, job->run->engine, job->run->model, &job->run->wanted, &report->used,
                                       &report->ledger, &report->error);
     if (!report->status) ck_ledger_add_material(&report->ledger, job->run->model);
-    return state;
+    return !report->status;
 }
 
 // What the whole run would cost, s of CPU time.
@@ -69,24 +70,29 @@ static void measure(void *context) {
     const Job *job = context;
     const ck_Engine *engine = job->run->engine;
     Report *report = job->report;
-    void *state = create(job);
-    if (report->status) return;
-    ck_engine_read(engine, state, &job->run->trajectory, 0);
+    ck_Session session;
+    if (!begin(job, &session)) return;
+    ck_session_read(&session, &job->run->trajectory, 0);
     report->frame_count = 1;
     while (report->frame_count <= job->frames) {
-        double start = cpu_of(engine, state);
-        report->step = ck_engine_advance(engine, state, job->run->model, report->frame_count - 1);
-        report->cpu += cpu_of(engine, state) - start;
+        double start = cpu_of(engine, session.state);
+        report->step = ck_session_advance(&session, report->frame_count - 1);
+        report->cpu += cpu_of(engine, session.state) - start;
+        if (report->step && *session.refusal.message) {
+            report->status = CK_REFUSED;
+            snprintf(report->error.message, sizeof report->error.message, "%.400s, in the change at %g s",
+                     session.refusal.message, (report->frame_count - 1) * job->run->model->step);
+        }
         if (report->step) break;
-        ck_engine_read(engine, state, &job->run->trajectory, report->frame_count);
+        ck_session_read(&session, &job->run->trajectory, report->frame_count);
         if (!is_finite(job->run, report->frame_count)) report->step = CK_STEP_DIVERGED;
         if (report->step) break;
         report->frame_count++;
         if (is_too_slow(job)) report->is_cut = true;
         if (report->is_cut) break;
     }
-    if (engine->remark) report->remark = engine->remark(state);
-    engine->destroy(state);
+    if (engine->remark) report->remark = engine->remark(session.state);
+    ck_session_end(&session);
 }
 
 static void time_frames(void *context) {
@@ -94,21 +100,20 @@ static void time_frames(void *context) {
     const ck_Engine *engine = job->run->engine;
     Report *report = job->report;
     // warm up on a world of its own: code and allocator, not this world's state
-    void *state = create(job);
-    if (report->status) return;
-    for (int i = 0; i < job->frames && i < 3; i++) ck_engine_advance(engine, state, job->run->model, i);
-    engine->destroy(state);
-    state = create(job);
-    if (report->status) return;
+    ck_Session session;
+    if (!begin(job, &session)) return;
+    for (int i = 0; i < job->frames && i < 3; i++) ck_session_advance(&session, i);
+    ck_session_end(&session);
+    if (!begin(job, &session)) return;
     for (int i = 0; i < job->frames; i++) {
-        double start = cpu_of(engine, state);
-        report->step = ck_engine_advance(engine, state, job->run->model, i);
-        double cpu = cpu_of(engine, state) - start;
+        double start = cpu_of(engine, session.state);
+        report->step = ck_session_advance(&session, i);
+        double cpu = cpu_of(engine, session.state) - start;
         report->cpu += cpu;
         report->worst_step = fmax(report->worst_step, cpu);
         if (report->step) break;
     }
-    engine->destroy(state);
+    ck_session_end(&session);
 }
 
 static const ck_RunStatus status_of_child[] = {
@@ -167,7 +172,7 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
 
 // True, with status and reason set, where the scene has a term that the engine lacks.
 static bool is_unsupported(ck_Run *run) {
-    unsigned missing = run->model->terms & ~run->engine->terms;
+    unsigned missing = run->model->terms & ~run->engine->terms & ~(unsigned)CK_TERM_CHANGES;
     if (!missing) return false;
     run->status = CK_RUN_UNSUPPORTED;
     size_t used = (size_t)snprintf(run->reason, sizeof run->reason, "%s does not model", run->engine->name);
@@ -204,8 +209,8 @@ ck_Status ck_run_measure(ck_Run *run, const ck_Model *model, const ck_Engine *en
 
 static void find_automatic(void *context) {
     const Job *job = context;
-    void *state = create(job);
-    if (!job->report->status) job->run->engine->destroy(state);
+    ck_Session session;
+    if (begin(job, &session)) ck_session_end(&session);
 }
 
 ck_Status ck_run_automatic(const ck_Engine *engine, const ck_Model *model, const ck_Settings *wanted,

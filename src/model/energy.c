@@ -17,6 +17,14 @@ ck_Energy ck_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, i
         energy.kinetic += 0.5 * model->mass[i] * ck_dot(velocity + 3 * i, velocity + 3 * i);
         energy.field -= model->mass[i] * (ck_dot(field, position + 3 * i) - ck_dot(field, model->position + 3 * i));
     }
+    const ck_Turn *turn = ck_trajectory_turn(trajectory, frame);
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_RigidBody *rigid = &model->rigid[i];
+        const ck_Collider now = ck_rigid_place(rigid, position + 3 * rigid->particle, turn[i].rotation);
+        double momentum[3];
+        ck_rigid_momentum(momentum, rigid, &now, turn[i].spin);
+        energy.kinetic += 0.5 * ck_dot(momentum, turn[i].spin);
+    }
     return energy;
 }
 
@@ -84,6 +92,8 @@ static bool loses_otherwise(const ck_Model *model) {
     loses |= model->wind.face_count > 0;
     for (int i = 0; i < model->collider_count; i++)
         loses |= model->colliders[i].restitution < 1 || model->colliders[i].friction > 0;
+    for (int i = 0; i < model->rigid_count; i++)
+        loses |= model->rigid[i].shape.restitution < 1 || model->rigid[i].shape.friction > 0;
     return loses;
 }
 

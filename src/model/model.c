@@ -4,6 +4,8 @@
 #include "collider.h"
 #include "path.h"
 #include "scene.h"
+#include "segment.h"
+#include "statistics.h"
 #include "vector.h"
 
 #include <math.h>
@@ -28,6 +30,9 @@ const char *const ck_term_names[CK_TERM_COUNT] = {
     "moving pins",
     "moving colliders",
     "capsules, cylinders or boxes",
+    "rigid bodies",
+    "uneven steps",
+    "changes",
 };
 
 const char *const ck_shape_names[CK_SHAPE_COUNT] = {"plane", "sphere", "capsule", "cylinder", "box"};
@@ -42,7 +47,8 @@ static ck_Status copy_text(char **out, const char *text) {
 
 static ck_Status copy_labels(ck_Model *model, const ck_SceneFile *file) {
     ck_Status status = copy_text(&model->name, file->name);
-    if (!status) status = copy_text(&model->truth, file->truth);
+    // none is what a scene says that is another one's but for its truth
+    if (!status) status = copy_text(&model->truth, file->truth && strcmp(file->truth, "none") ? file->truth : NULL);
     model->measure = calloc(file->measure_count + 1, sizeof *model->measure);
     if (!model->measure) return CK_NO_MEMORY;
     for (uint32_t i = 0; i < file->measure_count && !status; i++) {
@@ -58,6 +64,12 @@ static bool is_near_fps(const ck_SceneTime *time) {
     return fabs(fps - round(fps)) < 1e-4 * fps && fmod(time->duration * round(fps), 1) == 0;
 }
 
+static bool moves_collider(const ck_SceneFile *file) {
+    bool moves = false;
+    for (uint32_t i = 0; i < file->colliders_count; i++) moves |= file->colliders[i].path != NULL;
+    return moves;
+}
+
 static ck_Status set_time(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
     const ck_SceneTime *time = &scene->file->time;
     double ratio = time->duration / time->step, frames = floor(ratio + 0.5);
@@ -68,6 +80,14 @@ static ck_Status set_time(ck_Model *model, const ck_Scene *scene, ck_Error *erro
     model->duration = time->duration;
     model->step = time->step;
     model->frame_count = (int)frames;
+    model->jitter = time->jitter;
+    model->jitter_seed = time->seed;
+    if (!(time->jitter < 1))
+        return ck_scene_fail(scene, "time.jitter", error, "it is %g; below 1, or a step would take no time",
+                             time->jitter);
+    if (time->jitter > 0 && (scene->file->moves_count || moves_collider(scene->file)))
+        return ck_scene_fail(scene, "time.jitter", error,
+                             "uneven steps of what moves along a path are not modelled; leave one of the two out");
     return CK_OK;
 }
 
@@ -163,6 +183,8 @@ static ck_Status check_springs(const ck_Model *model, const ck_Scene *scene, ck_
     bool is_none = !(springs->stiffness > 0) && !(springs->shear > 0) && !(springs->bend > 0) && !springs->rigid;
     const ck_SceneNetwork *network = scene->file->network;
     bool lacks_bars = network && network->springs_count && !network->bars_count;
+    // bodies hang on them
+    for (uint32_t i = 0; i < scene->file->bodies_count; i++) lacks_bars &= !scene->file->bodies[i].hang_count;
     const struct {
         const char *path;
         double value;
@@ -279,10 +301,13 @@ static unsigned terms_in_use(const ck_Model *model) {
     if (model->driven_count) terms |= CK_TERM_MOVES;
     if (model->hinge_count) terms |= CK_TERM_BENDING;
     if (model->wind.face_count) terms |= CK_TERM_WIND;
+    if (model->rigid_count) terms |= CK_TERM_BODIES;
+    if (model->jitter > 0) terms |= CK_TERM_JITTER;
     return terms;
 }
 
-ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+//   is_part  of a scene that changes: where its particles are is not yet known
+static ck_Status build(ck_Model *model, const ck_Scene *scene, bool is_part, ck_Error *error) {
     *model = (ck_Model){0};
     if (error) error->message[0] = 0;
     ck_Status status = copy_labels(model, scene->file);
@@ -301,13 +326,24 @@ ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error
     if (status) return status;
     ck_model_add_noise(model, scene);
     // of a start at equilibrium it is asked once that is known
-    if (!model->starts_settled) status = ck_model_check_outside(model, scene, error);
+    if (!model->starts_settled && !is_part) status = ck_model_check_outside(model, scene, error);
     if (status) return status;
     set_fields(model, scene->file);
     status = set_node_velocity(model, scene, error);
+    if (!status) status = ck_model_add_rigid(model, scene, is_part, error);
+    if (status == CK_NO_MEMORY) return ck_fail(error, status, "%s: out of memory", scene->document.path);
     if (status) return status;
     model->terms = terms_in_use(model);
     return check_finite(model, scene, error);
+}
+
+ck_Status ck_model_build(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    const ck_Status status = build(model, scene, false, error);
+    return status ? status : ck_model_build_segments(model, scene, error);
+}
+
+ck_Status ck_model_build_part(ck_Model *model, const ck_Scene *scene, ck_Error *error) {
+    return build(model, scene, true, error);
 }
 
 void ck_model_free(ck_Model *model) {
@@ -318,6 +354,10 @@ void ck_model_free(ck_Model *model) {
         free(model->groups[i].particles);
     }
     for (int i = 0; i < model->path_count; i++) free(model->paths[i].points);
+    for (int i = 0; i < model->rigid_count; i++) free(model->rigid[i].hung);
+    for (int i = 0; i < model->segment_count; i++) ck_segment_free(&model->segments[i]);
+    free(model->segments);
+    free(model->rigid);
     free(model->paths);
     free(model->driven);
     free(model->groups);
@@ -351,6 +391,17 @@ double ck_model_release_time(const ck_Model *model, int particle) {
         for (int j = 0; j < model->releases[i].particle_count; j++)
             if (model->releases[i].particles[j] == particle) return model->releases[i].frame * model->step;
     return INFINITY;
+}
+
+void ck_model_parts(const ck_Model *model, int frame, double *parts) {
+    ck_Random random = ck_random_seed(((uint64_t)model->jitter_seed << 32) + (uint64_t)frame);
+    const double more = model->jitter * (2 * ck_random_unit(&random) - 1);
+    parts[0] = 0.5 * model->step * (1 + more);
+    parts[1] = model->step - parts[0];
+}
+
+int ck_model_cloth_count(const ck_Model *model) {
+    return model->particle_count - model->rigid_count;
 }
 
 bool ck_model_is_held(const ck_Model *model, int particle) {

@@ -12,6 +12,7 @@ extern "C" {
 #endif
 
 struct ck_Scene;
+struct ck_Segment;
 
 // What a scene models; an engine names the terms it supports. Absent terms cost nothing.
 typedef enum ck_Term {
@@ -30,8 +31,11 @@ typedef enum ck_Term {
     CK_TERM_PULL_ONLY = 1 << 12, // springs that hang slack where they are shorter than at rest
     CK_TERM_MOVES = 1 << 13,     // pins that are moved
     CK_TERM_MOVING_COLLIDERS = 1 << 14,
-    CK_TERM_SOLIDS = 1 << 15, // capsules, cylinders or boxes
-    CK_TERM_COUNT = 16,
+    CK_TERM_SOLIDS = 1 << 15,  // capsules, cylinders or boxes
+    CK_TERM_BODIES = 1 << 16,  // rigid ones that move freely
+    CK_TERM_JITTER = 1 << 17,  // frames that come in uneven steps
+    CK_TERM_CHANGES = 1 << 18, // another scene from some frame on, which no engine sees
+    CK_TERM_COUNT = 19,
     CK_TERM_COLLIDERS = CK_TERM_PLANE | CK_TERM_SPHERE | CK_TERM_SOLIDS,
 } ck_Term;
 
@@ -103,6 +107,16 @@ typedef struct ck_Collider {
     const ck_Path *path; // of the model's; NULL: it stays
 } ck_Collider;
 
+// A body of a fixed shape that moves freely: see rigid.h.
+typedef struct ck_RigidBody {
+    int particle;      // its centre: the last ones of a model, in order
+    ck_Collider shape; // a sphere or a box, where it starts
+    double spin[3];    // rad/s at the start
+    double inertia[3]; // kg·m², about its axes
+    int *hung;         // particles that springs join to its centre: they do not touch it
+    int hung_count;
+} ck_RigidBody;
+
 typedef struct ck_Release {
     double at; // s
     int frame; // the first at or after that time: pins are let go between frames
@@ -121,7 +135,7 @@ typedef struct ck_Group {
 typedef struct ck_Model {
     char *name;
     ck_Body body;
-    int particle_count;
+    int particle_count;  // those of the cloth, and then a centre of each rigid body
     int columns;         // of a cloth: particle = row*columns + column; else 0
     double *position;    // [3*n] m at the start
     double *velocity;    // [3*n] m/s at the start, 0 where pinned
@@ -145,6 +159,8 @@ typedef struct ck_Model {
     double drag;                 // 1/s
     ck_Collider *colliders;
     int collider_count;
+    ck_RigidBody *rigid;
+    int rigid_count;
     ck_Release *releases;
     int release_count;
     ck_Path *paths;
@@ -156,9 +172,13 @@ typedef struct ck_Model {
     double spacing;        // m: between neighbours; of a network or mesh its shortest spring
     double duration, step; // s
     int frame_count;       // frames after the start
-    char *truth;           // as the scene names it; NULL: none
-    char **measure;        // names of the metrics the scene asks for
-    int measure_count;     // 0: every metric
+    double jitter;         // of the steps that frames come in; 0: a frame is one
+    uint32_t jitter_seed;
+    struct ck_Segment *segments; // what the scene is from later frames on: see segment.h
+    int segment_count;
+    char *truth;       // as the scene names it; NULL: none
+    char **measure;    // names of the metrics the scene asks for
+    int measure_count; // 0: every metric
 } ck_Model;
 
 // Compiles a scene.
@@ -167,6 +187,13 @@ ck_Status ck_model_build(ck_Model *model, const struct ck_Scene *scene, ck_Error
 
 // Accepts a zeroed model.
 void ck_model_free(ck_Model *model);
+
+// The two steps that a frame comes in where there is jitter, s: half of it each, one up to that share more, and the
+// other less; by the seed. The first frame is 0.
+void ck_model_parts(const ck_Model *model, int frame, double *parts);
+
+// How many particles are the cloth's.
+int ck_model_cloth_count(const ck_Model *model);
 
 // A hash of all numbers that a model's motion depends on, whatever files they came from.
 uint64_t ck_model_hash(const ck_Model *model);

@@ -1,11 +1,24 @@
 #include "files.h"
 #include "model.h"
+#include "segment.h"
+
+#include <string.h>
 
 static uint64_t hash_path(uint64_t value, const ck_Path *path) {
     const double numbers[] = {path->kind,      path->from,      path->to,       path->vector[0],
                               path->vector[1], path->vector[2], path->frequency};
     value = ck_hash(value, numbers, sizeof numbers);
     return ck_hash(value, path->points, (size_t)path->point_count * sizeof *path->points);
+}
+
+static uint64_t hash_collider(uint64_t value, const ck_Collider *collider) {
+    const double numbers[] = {collider->shape, collider->radius, collider->restitution, collider->friction};
+    value = ck_hash(value, numbers, sizeof numbers);
+    value = ck_hash(value, collider->point, sizeof collider->point);
+    value = ck_hash(value, collider->normal, sizeof collider->normal);
+    value = ck_hash(value, collider->axes, sizeof collider->axes);
+    value = ck_hash(value, collider->half, sizeof collider->half);
+    return collider->path ? hash_path(value, collider->path) : value;
 }
 
 uint64_t ck_model_hash(const ck_Model *model) {
@@ -38,20 +51,27 @@ uint64_t ck_model_hash(const ck_Model *model) {
         value = ck_hash(value, &model->driven[i].particle, sizeof model->driven[i].particle);
         value = hash_path(value, model->driven[i].path);
     }
-    for (int i = 0; i < model->collider_count; i++) {
-        const ck_Collider *collider = &model->colliders[i];
-        const double numbers[] = {collider->shape, collider->radius, collider->restitution, collider->friction};
-        value = ck_hash(value, numbers, sizeof numbers);
-        value = ck_hash(value, collider->point, sizeof collider->point);
-        value = ck_hash(value, collider->normal, sizeof collider->normal);
-        value = ck_hash(value, collider->axes, sizeof collider->axes);
-        value = ck_hash(value, collider->half, sizeof collider->half);
-        if (collider->path) value = hash_path(value, collider->path);
+    for (int i = 0; i < model->collider_count; i++) value = hash_collider(value, &model->colliders[i]);
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_RigidBody *rigid = &model->rigid[i];
+        value = hash_collider(value, &rigid->shape);
+        value = ck_hash(value, rigid->spin, sizeof rigid->spin);
+        value = ck_hash(value, rigid->hung, (size_t)rigid->hung_count * sizeof *rigid->hung);
     }
     for (int i = 0; i < model->release_count; i++) {
         const ck_Release *release = &model->releases[i];
         value = ck_hash(value, &release->frame, sizeof release->frame);
         value = ck_hash(value, release->particles, (size_t)release->particle_count * sizeof *release->particles);
+    }
+    for (int i = 0; i < model->segment_count; i++) {
+        const uint64_t part = ck_model_hash(&model->segments[i].model);
+        value = ck_hash(value, &model->segments[i].frame, sizeof model->segments[i].frame);
+        value = ck_hash(value, &part, sizeof part);
+        value = ck_hash(value, model->segments[i].words, strlen(model->segments[i].words));
+    }
+    if (model->jitter > 0) {
+        value = ck_hash(value, &model->jitter, sizeof model->jitter);
+        value = ck_hash(value, &model->jitter_seed, sizeof model->jitter_seed);
     }
     const double numbers[] = {model->gravity[0], model->gravity[1], model->gravity[2], model->force[0], model->force[1],
                               model->force[2],   model->drag,       model->duration,   model->step};

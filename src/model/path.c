@@ -148,7 +148,7 @@ void ck_driven_accelerate(const ck_Model *model, double time, int side, double *
 }
 
 bool ck_model_is_worked_on(const ck_Model *model) {
-    return model->path_count > 0 || ck_wind_blows(model);
+    return model->path_count > 0 || model->segment_count > 0 || ck_wind_blows(model);
 }
 
 bool ck_model_ends_moving(const ck_Model *model) {

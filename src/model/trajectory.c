@@ -2,14 +2,17 @@
 
 #include <sys/mman.h>
 
-// the states, then the contact forces
+// the states, then the contact forces and the turns
 static size_t mapped_bytes(const ck_Trajectory *trajectory) {
-    return trajectory->bytes + 3 * sizeof(double) * (size_t)trajectory->capacity;
+    return trajectory->bytes +
+           (3 * sizeof(double) + (size_t)trajectory->rigid_count * sizeof(ck_Turn)) * (size_t)trajectory->capacity;
 }
 
 ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model, ck_Error *error) {
-    *trajectory = (ck_Trajectory){
-        .particle_count = model->particle_count, .capacity = model->frame_count + 1, .step = model->step};
+    *trajectory = (ck_Trajectory){.particle_count = model->particle_count,
+                                  .rigid_count = model->rigid_count,
+                                  .capacity = model->frame_count + 1,
+                                  .step = model->step};
     trajectory->bytes = sizeof(double) * 6 * (size_t)model->particle_count * (size_t)trajectory->capacity;
     void *data =
         mmap(NULL, mapped_bytes(trajectory), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -17,7 +20,9 @@ ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model,
         return ck_fail(error, CK_NO_MEMORY, "%s: no memory for %d frames of %d particles", model->name,
                        trajectory->capacity, model->particle_count);
     trajectory->data = data;
-    if (model->collider_count) trajectory->contact = trajectory->data + trajectory->bytes / sizeof(double);
+    double *contact = trajectory->data + trajectory->bytes / sizeof(double);
+    if (model->collider_count) trajectory->contact = contact;
+    if (model->rigid_count) trajectory->turn = (ck_Turn *)(contact + 3 * (size_t)trajectory->capacity);
     return CK_OK;
 }
 
@@ -32,4 +37,9 @@ double *ck_trajectory_position(const ck_Trajectory *trajectory, int frame) {
 
 double *ck_trajectory_velocity(const ck_Trajectory *trajectory, int frame) {
     return ck_trajectory_position(trajectory, frame) + 3 * (size_t)trajectory->particle_count;
+}
+
+ck_Turn *ck_trajectory_turn(const ck_Trajectory *trajectory, int frame) {
+    if (!trajectory->turn) return NULL;
+    return trajectory->turn + (size_t)trajectory->rigid_count * (size_t)frame;
 }

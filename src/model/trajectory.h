@@ -3,6 +3,7 @@
 #define CK_TRAJECTORY_H
 
 #include "model.h"
+#include "rigid.h"
 #include "status.h"
 
 #include <stddef.h>
@@ -19,6 +20,8 @@ typedef struct ck_Trajectory {
     double *data;    // [capacity][2][3*n] positions, then velocities; shared with child processes
     size_t bytes;    // of data
     double *contact; // [capacity][3] N, mean force of the colliders over the frame before; NULL without colliders
+    ck_Turn *turn;   // [capacity][rigid_count] of each rigid body; NULL without any
+    int rigid_count;
 } ck_Trajectory;
 
 // Room for a model's start and all its frames, in memory that a child process can fill.
@@ -31,6 +34,9 @@ void ck_trajectory_free(ck_Trajectory *trajectory);
 // [3*n] m and m/s of one frame.
 double *ck_trajectory_position(const ck_Trajectory *trajectory, int frame);
 double *ck_trajectory_velocity(const ck_Trajectory *trajectory, int frame);
+
+// [rigid_count] of one frame; NULL without rigid bodies.
+ck_Turn *ck_trajectory_turn(const ck_Trajectory *trajectory, int frame);
 
 #ifdef __cplusplus
 }

@@ -4,26 +4,41 @@
 
 #include <string.h>
 
+// s: from the middle of the last substep to that of this one.
+static double between(const ck_Native *native) {
+    return 0.5 * (native->last + native->dt);
+}
+
+static void speeds(const ck_Native *native, int particle, double *drift, double *now) {
+    const double dt = between(native), half = 0.5 * native->model->drag * dt, *v = native->velocity + 3 * particle;
+    double field[3];
+    ck_model_field(native->model, particle, field);
+    for (int axis = 0; axis < 3; axis++) drift[axis] = ((1 - half) * v[axis] + dt * field[axis]) / (1 + half);
+    for (int axis = 0; axis < 3; axis++) now[axis] = 0.5 * (v[axis] + drift[axis]);
+}
+
 bool ck_leapfrog_substep(ck_Native *native, bool (*solve)(ck_Native *native)) {
     const ck_Model *model = native->model;
-    const double dt = native->dt, keep = 1 - 0.5 * model->drag * dt, slow = 1 / (1 + 0.5 * model->drag * dt);
+    const double dt = native->dt, apart = between(native), keep = 1 - 0.5 * model->drag * apart,
+                 slow = 1 / (1 + 0.5 * model->drag * apart);
     ck_native_start_substep(native);
+    ck_native_meet(native, speeds);
     memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
     for (int i = 0; i < model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
         double field[3];
         const double *v = native->velocity + 3 * i;
         ck_model_field(model, i, field);
-        if (native->contact) {
+        if (native->contact && i < ck_model_cloth_count(model)) {
             double next[3], change[3];
             for (int axis = 0; axis < 3; axis++) {
-                next[axis] = slow * (keep * v[axis] + dt * field[axis]);
-                change[axis] = (next[axis] - v[axis]) / dt;
+                next[axis] = slow * (keep * v[axis] + apart * field[axis]);
+                change[axis] = (next[axis] - v[axis]) / apart;
             }
             ck_native_move(native, i, next, change);
         } else {
             for (int axis = 0; axis < 3; axis++)
-                native->position[3 * i + axis] += dt * slow * (keep * v[axis] + dt * field[axis]);
+                native->position[3 * i + axis] += dt * slow * (keep * v[axis] + apart * field[axis]);
         }
     }
     ck_native_drive(native);
@@ -31,6 +46,7 @@ bool ck_leapfrog_substep(ck_Native *native, bool (*solve)(ck_Native *native)) {
     for (int i = 0; i < 3 * model->particle_count; i++)
         native->velocity[i] = (native->position[i] - native->origin[i]) / dt;
     ck_native_drive_speed(native);
+    native->last = dt;
     return solved;
 }
 
@@ -39,7 +55,8 @@ static void start_leapfrog(ck_Native *native, int particle) {
     double field[3], *velocity = native->velocity + 3 * particle, *before = native->other_velocity + 3 * particle;
     ck_model_field(native->model, particle, field);
     ck_add_scaled(field, -native->model->drag, velocity);
-    if (native->contact) ck_contact_filter(native->contact, native->position + 3 * particle, velocity, field, field);
+    if (native->contact && particle < ck_model_cloth_count(native->model))
+        ck_contact_filter(native->contact, native->position + 3 * particle, velocity, field, field);
     memcpy(before, velocity, 3 * sizeof(double));
     ck_add_scaled(velocity, -0.5 * native->dt, field);
     ck_add_scaled(before, -1.5 * native->dt, field);

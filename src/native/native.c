@@ -16,6 +16,7 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
     *native = (ck_Native){
         .model = model,
         .dt = model->step / used->substeps,
+        .last = model->step / used->substeps,
         .used = *used,
         .substeps = used->substeps,
         .iterations = used->iterations,
@@ -33,6 +34,7 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
     ck_Status status = ck_contact_create(&native->contact, model, native->dt, error);
+    if (!status) status = ck_rigid_contact_create(&native->rigid, model, native->dt, error);
     if (!status) status = ck_waves_create(&native->waves, (int)used->threads, error);
     native->origin = native->contact ? calloc(vectors, sizeof(double)) : native->start;
     if (!native->origin && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
@@ -53,6 +55,7 @@ void ck_native_destroy(void *state) {
     if (!native) return;
     if (native->contact) free(native->origin);
     free(native->contact);
+    ck_rigid_contact_destroy(native->rigid);
     ck_waves_destroy(native->waves);
     ck_projection_destroy(native->cloth);
     free(native->compliance);
@@ -76,6 +79,13 @@ void ck_native_read(const void *state, double *position, double *velocity) {
     const ck_Native *native = state;
     memcpy(position, native->position, 3 * sizeof(double) * (size_t)native->model->particle_count);
     memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
+}
+
+void ck_native_pace(void *state, double duration) {
+    ck_Native *native = state;
+    native->dt = duration / native->substeps;
+    if (native->contact) native->contact->dt = native->dt;
+    if (native->rigid) ck_rigid_contact_pace(native->rigid, native->dt);
 }
 
 void ck_native_start_frame(ck_Native *native) {
@@ -133,10 +143,27 @@ void ck_native_move(ck_Native *native, int particle, const double *next, const d
 }
 
 void ck_native_project(ck_Native *native) {
-    for (int i = 0; i < native->model->particle_count && native->contact; i++)
+    if (native->rigid) ck_rigid_contact_project(native->rigid, native);
+    for (int i = 0; i < ck_model_cloth_count(native->model) && native->contact; i++)
         if (native->inverse_mass[i] > 0)
             ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i,
                                native->position + 3 * i);
+}
+
+void ck_native_meet(ck_Native *native,
+                    void (*speeds)(const ck_Native *native, int particle, double *drift, double *now)) {
+    ck_RigidContact *rigid = native->rigid;
+    if (!rigid) return;
+    for (int i = 0; i < native->model->particle_count; i++) {
+        memcpy(rigid->drift + 3 * i, native->velocity + 3 * i, 3 * sizeof(double));
+        memcpy(rigid->now + 3 * i, native->velocity + 3 * i, 3 * sizeof(double));
+        if (native->inverse_mass[i] > 0) speeds(native, i, rigid->drift + 3 * i, rigid->now + 3 * i);
+    }
+    ck_rigid_contact_meet(rigid, native, (double)native->done * native->dt);
+}
+
+void ck_native_turn(const void *state, ck_Turn *turn) {
+    ck_rigid_contact_turns(((const ck_Native *)state)->rigid, turn);
 }
 
 bool ck_native_is_finite(const ck_Native *native) {

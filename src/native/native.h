@@ -5,13 +5,15 @@
 #include "contact.h"
 #include "engine.h"
 #include "own_ledger.h"
+#include "rigid_contact.h"
 
 struct ck_ProjectedCloth;
 struct ck_Waves;
 
 typedef struct ck_Native {
     const ck_Model *model;
-    double dt; // s, one substep
+    double dt;   // s, one substep
+    double last; // s, the one before: another where steps are uneven
     ck_Settings used;
     uint32_t substeps, iterations;
     uint64_t done;                   // substeps
@@ -25,6 +27,7 @@ typedef struct ck_Native {
     double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
     double *bending;                 // [3*hinges] XPBD's multipliers of hinges, N·s²; NULL without
     ck_Contact *contact;             // NULL without colliders
+    ck_RigidContact *rigid;          // NULL without rigid bodies
     struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
 } ck_Native;
@@ -35,7 +38,7 @@ typedef struct ck_Native {
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
     (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |           \
-     CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
+     CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS | CK_TERM_JITTER)
 
 // Allocates and sets the start state. Errors: CK_NO_MEMORY.
 ck_Status ck_native_create(ck_Native **native, const ck_Model *model, const ck_Settings *used, ck_Error *error);
@@ -58,6 +61,9 @@ void ck_native_start_substep(ck_Native *native);
 void ck_native_drive(ck_Native *native);
 void ck_native_drive_speed(ck_Native *native);
 
+// Sets how long the substeps of the next steps are, by what a step takes, s.
+void ck_native_pace(void *state, double duration);
+
 // Lets a pinned particle go, with the speed it has.
 void ck_native_release(void *state, int particle);
 
@@ -67,6 +73,12 @@ void ck_native_contact(const void *state, double *force);
 // For position-based methods: moves a particle by one substep at the mean velocity next of that substep, [3] m/s, or
 // over the impacts on its way, where field, [3] m/s², acts in between; these also set its origin.
 void ck_native_move(ck_Native *native, int particle, const double *next, const double *field);
+
+// Where there are rigid bodies: their impulses, with what is to move each particle in the substep, [3] m/s, and its
+// speed at its start given by a function, and how bodies turn.
+void ck_native_meet(ck_Native *native,
+                    void (*speeds)(const ck_Native *native, int particle, double *drift, double *now));
+void ck_native_turn(const void *state, ck_Turn *turn);
 
 // Moves every particle that is inside a collider out of it, with friction. Nothing without colliders.
 void ck_native_project(ck_Native *native);

@@ -133,6 +133,7 @@ const ck_Engine ck_native_rope = {
     .order = 0,
     .create = create,
     .step = step,
+    .pace = ck_native_pace,
     .read = ck_leapfrog_read,
     .release = ck_leapfrog_release,
     .destroy = ck_native_destroy,

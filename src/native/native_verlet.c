@@ -65,15 +65,42 @@ static void follow_jump(ck_Native *native) {
     accelerate(native, native->acceleration);
 }
 
+// The first half of a particle's substep where nothing is in its way.
+static void fly(ck_Native *native, int particle) {
+    const double dt = native->dt, *acceleration = native->acceleration + 3 * particle;
+    double *v = native->velocity + 3 * particle, *predicted = native->other_velocity + 3 * particle;
+    ck_add_scaled(native->position + 3 * particle, dt, v);
+    ck_add_scaled(native->position + 3 * particle, 0.5 * dt * dt, acceleration);
+    memcpy(predicted, v, 3 * sizeof *v);
+    ck_add_scaled(predicted, dt, acceleration);
+    ck_add_scaled(v, 0.5 * dt, acceleration);
+}
+
+// What bodies hold has no velocity into them, which dampers would see.
+static void foresee(ck_Native *native) {
+    for (int i = 0; i < 3 * native->model->particle_count && native->rigid; i++)
+        native->other_velocity[i] += native->rigid->held[i];
+}
+
+static void speeds(const ck_Native *native, int particle, double *drift, double *now) {
+    (void)now; // is the velocity
+    ck_add_scaled(drift, 0.5 * native->dt, native->acceleration + 3 * particle);
+}
+
 // As substep, where every particle's motion under its acceleration is followed through contact: what is left of both
 // accelerations, by the state at the end, makes the correction.
 static void substep_with_contact(ck_Native *native) {
     double *x = native->position, *v = native->velocity, *predicted = native->other_velocity, left[3];
+    const int cloth = ck_model_cloth_count(native->model);
     if (native->contact->motion) ck_contact_follow(native->contact, (double)native->done * native->dt);
     native->contact->elapsed = native->dt;
     for (int i = 0; i < native->model->particle_count; i++) {
         double *a = native->acceleration + 3 * i;
         if (native->inverse_mass[i] == 0) continue;
+        if (i >= cloth) {
+            fly(native, i);
+            continue;
+        }
         ck_contact_advance(native->contact, native->model->mass[i], x + 3 * i, v + 3 * i, a);
         memcpy(predicted + 3 * i, v + 3 * i, 3 * sizeof(double));
         ck_contact_filter(native->contact, x + 3 * i, v + 3 * i, a, left);
@@ -81,10 +108,14 @@ static void substep_with_contact(ck_Native *native) {
     }
     ck_native_drive(native);
     ck_native_drive_speed(native);
+    foresee(native);
     accelerate(native, native->acceleration);
     for (int i = 0; i < native->model->particle_count; i++) {
         if (native->inverse_mass[i] == 0) continue;
-        ck_contact_filter(native->contact, x + 3 * i, predicted + 3 * i, native->acceleration + 3 * i, left);
+        if (i < cloth)
+            ck_contact_filter(native->contact, x + 3 * i, predicted + 3 * i, native->acceleration + 3 * i, left);
+        else
+            memcpy(left, native->acceleration + 3 * i, sizeof left);
         ck_add_scaled(v + 3 * i, 0.5 * native->dt, left);
     }
     follow_jump(native);
@@ -109,9 +140,17 @@ static void substep(ck_Native *native) {
     }
     ck_native_drive(native);
     ck_native_drive_speed(native);
+    foresee(native);
     accelerate(native, acceleration);
     for (int i = 0; i < count; i++) velocity[i] += 0.5 * dt * acceleration[i];
     follow_jump(native);
+}
+
+// The same among rigid bodies. At its end no velocity is left into what is touched.
+static void substep_with_bodies(ck_Native *native) {
+    ck_native_meet(native, speeds);
+    substep(native);
+    ck_rigid_contact_settle(native->rigid, native, (double)native->done * native->dt);
 }
 
 // Time step: half of the stability bound, so that a cloth that folds (up to √2 in ω) stays inside;
@@ -203,13 +242,22 @@ static ck_StepResult step(void *state) {
         ck_explicit_step(verlet->cloth, native->substeps, native->waves);
         ck_explicit_read(verlet->cloth, native->position, native->velocity);
     } else {
-        for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+        void (*const advance)(ck_Native *) = native->rigid ? substep_with_bodies : substep;
+        for (uint32_t i = 0; i < native->substeps; i++) advance(native);
     }
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
 
 static void read_state(const void *state, double *position, double *velocity) {
     ck_native_read(((const Verlet *)state)->native, position, velocity);
+}
+
+static void pace(void *state, double duration) {
+    ck_native_pace(((Verlet *)state)->native, duration);
+}
+
+static void read_turn(const void *state, ck_Turn *turn) {
+    ck_native_turn(((const Verlet *)state)->native, turn);
 }
 
 static void read_contact(const void *state, double *force) {
@@ -250,14 +298,16 @@ const ck_Engine ck_native_verlet = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_VELOCITY_VERLET,
-    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY,
+    .terms = CK_NATIVE_TERMS | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_BODIES,
     .settings = settings,
     .order = 2,
     .create = create,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = read_contact,
+    .turn = read_turn,
     .destroy = destroy,
 };
 
@@ -298,11 +348,12 @@ const ck_Engine ck_native_narrow = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_VELOCITY_VERLET,
-    .terms = CK_NATIVE_TERMS,
+    .terms = CK_NATIVE_TERMS & ~(unsigned)CK_TERM_JITTER,
     .settings = narrow_settings,
     .order = 2,
     .create = create_narrow,
     .step = step,
+    .pace = pace,
     .read = read_state,
     .release = release,
     .contact = read_contact,

@@ -67,12 +67,20 @@ static void sweep_hinges(ck_Native *native) {
     }
 }
 
+static void speeds(const ck_Native *native, int particle, double *drift, double *now) {
+    double field[3];
+    (void)now; // is the velocity
+    ck_model_field(native->model, particle, field);
+    ck_add_scaled(drift, native->dt, field);
+}
+
 // x ← x + v·dt + a·dt²;  sweeps;  v ← (x − x_start)/dt/(1 + γ·dt)
 // Drag comes last: before the sweeps it would also ease gravity's push, and a body at rest would hang too high.
 static void substep(ck_Native *native) {
     const ck_Model *model = native->model;
     const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
     ck_native_start_substep(native);
+    ck_native_meet(native, speeds);
     memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
     if (native->bending) memset(native->bending, 0, 3 * sizeof(double) * (size_t)model->hinge_count);
     if (model->wind.face_count) {
@@ -85,7 +93,7 @@ static void substep(ck_Native *native) {
         ck_model_field(model, i, field);
         // without air these stay 0
         ck_add_scaled(field, 1, native->acceleration + 3 * i);
-        if (native->contact) {
+        if (native->contact && i < ck_model_cloth_count(model)) {
             double next[3];
             memcpy(next, native->velocity + 3 * i, sizeof next);
             ck_add_scaled(next, dt, field);
@@ -168,6 +176,21 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                                              "c*compliance/dt", CK_APPROXIMATE});
 }
 
+// α̃ and γ̃ of every spring, by the substep.
+static void soften(ck_Native *native) {
+    for (int i = 0; i < native->model->spring_count; i++) {
+        const ck_Spring *spring = &native->model->springs[i];
+        const double compliance = compliance_of(spring, &native->used);
+        native->compliance[i] = compliance / (native->dt * native->dt);
+        native->gamma[i] = spring->damping * compliance / native->dt;
+    }
+}
+
+static void pace(void *state, double duration) {
+    ck_native_pace(state, duration);
+    soften(state);
+}
+
 static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
     const double dt = native->dt;
     ck_ProjectionRule rule = {CK_PROJECT_SPRINGS,
@@ -197,11 +220,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
         ck_native_destroy(native);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
-    for (size_t i = 0; i < springs; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        native->compliance[i] = compliance_of(spring, used) / (native->dt * native->dt);
-        native->gamma[i] = spring->damping * compliance_of(spring, used) / native->dt;
-    }
+    soften(native);
     return ck_native_hand_out(state, native, lay_in_rows(native, error));
 }
 
@@ -271,15 +290,17 @@ const ck_Engine ck_native_xpbd = {
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_XPBD,
-    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY,
+    .terms = CK_NATIVE_TERMS | CK_TERM_RIGID | CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_BODIES,
     .settings = settings,
     .order = 1,
     .rest_order = 2,
     .damped_rest_order = 1, // γ̃ sees gravity's push, too
     .create = create,
     .step = step,
+    .pace = pace,
     .read = ck_native_read,
     .release = release,
     .contact = ck_native_contact,
+    .turn = ck_native_turn,
     .destroy = ck_native_destroy,
 };

@@ -62,12 +62,13 @@ static bool read_path(const char **line, const char *first) {
     return !strncmp(whole, "\npath ", strlen("\npath ")) && is_plain && is_new;
 }
 
-// A collider's shape and its numbers; or "moves", of the one before, and times and places.
+// A collider's shape and its numbers; "moves", of the one before, and times and places; or "body", a rigid one, its
+// radius and half its core.
 static bool read_collider(const char **line) {
     static const struct {
         const char *word;
         int numbers;
-    } shapes[] = {{"plane ", 6}, {"sphere ", 4}, {"capsule ", 16}, {"cylinder ", 16}, {"box ", 16}};
+    } shapes[] = {{"plane ", 6}, {"sphere ", 4}, {"capsule ", 16}, {"cylinder ", 16}, {"box ", 16}, {"body ", 4}};
     int numbers = 0;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
         if (!strncmp(*line, shapes[i].word, strlen(shapes[i].word))) numbers = shapes[i].numbers;
@@ -98,11 +99,16 @@ static bool read_header(ck_Replay *replay, const char *scene) {
         !read_count(&line, "frames", 1, most, &replay->frame_count) ||
         !read_count(&line, "paths", 0, CK_REPLAY_MAX_PATHS, &replay->path_count))
         return false;
-    if (columns && replay->particle_count % columns) return false;
     for (int i = 0; i < replay->path_count; i++)
         if (!read_path(&line, replay->bytes)) return false;
-    while (!read_text(&line, "data\n"))
+    int bodies = 0;
+    while (!read_text(&line, "data\n")) {
+        bodies += !strncmp(line, "body ", 5);
         if (!read_collider(&line)) return false;
+    }
+    // each is three of the particles, behind the cloth's
+    const int cloth = replay->particle_count - 3 * bodies;
+    if (cloth < 1 || (columns && cloth % columns)) return false;
     replay->header_size = (size_t)(line - replay->bytes);
     return replay->header_size <= MOST_HEADER;
 }

@@ -43,7 +43,8 @@ typedef struct Session {
     ck_Talk talk;
     const Command *command;
     int particle_count;
-    double *raw; // [6*n] of an answer in bytes
+    int rigid_count;
+    double *raw; // [6*n + 7*rigid_count] of an answer in bytes
 } Session;
 
 static void take_terms(Hello *hello, ck_Talk *talk, char *words) {
@@ -170,13 +171,14 @@ static void end_session(void *state) {
 static ck_Status open_command(const void *source, void **state, const ck_Model *model, const ck_Settings *wanted,
                               ck_Settings *used, ck_Ledger *ledger, ck_Error *error) {
     Session *session = calloc(1, sizeof *session);
-    double *raw = calloc(6 * (size_t)model->particle_count, sizeof *raw);
+    double *raw = calloc(6 * (size_t)model->particle_count + 7 * (size_t)model->rigid_count, sizeof *raw);
     if (!session || !raw) {
         free(session);
         free(raw);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
-    *session = (Session){.command = source, .particle_count = model->particle_count, .raw = raw};
+    *session = (Session){
+        .command = source, .particle_count = model->particle_count, .rigid_count = model->rigid_count, .raw = raw};
     *used = (ck_Settings){0};
     ck_talk_start(&session->talk, session->command->line);
     fprintf(session->talk.to, VERSION "\n");
@@ -214,6 +216,14 @@ static void take_text(Session *session) {
         if (sscanf(line, "%lf %lf %lf %lf %lf %lf %n", x, x + 1, x + 2, v, v + 1, v + 2, &used) != 6 || line[used])
             ck_talk_refuse(&session->talk, line, "x y z vx vy vz of each particle");
     }
+    for (int i = 0; i < session->rigid_count; i++) {
+        double *q = session->raw + 6 * (size_t)session->particle_count + 7 * (size_t)i;
+        int used = 0;
+        ck_talk_line(&session->talk, line, sizeof line);
+        if (sscanf(line, "%lf %lf %lf %lf %lf %lf %lf %n", q, q + 1, q + 2, q + 3, q + 4, q + 5, q + 6, &used) != 7 ||
+            line[used])
+            ck_talk_refuse(&session->talk, line, "w x y z and the spin of each rigid body");
+    }
 }
 
 static void read_state(const void *state, double *position, double *velocity) {
@@ -222,11 +232,23 @@ static void read_state(const void *state, double *position, double *velocity) {
     size_t count = 3 * (size_t)session->particle_count;
     fprintf(session->talk.to, "read\n");
     if (session->command->hello.is_raw)
-        ck_talk_bytes(&session->talk, session->raw, 2 * count * sizeof(double));
+        ck_talk_bytes(&session->talk, session->raw,
+                      2 * count * sizeof(double) + (size_t)session->rigid_count * sizeof(ck_Turn));
     else
         take_text(session);
     memcpy(position, session->raw, count * sizeof(double));
     memcpy(velocity, session->raw + count, count * sizeof(double));
+}
+
+static void pace(void *state, double duration) {
+    Session *session = state;
+    fprintf(session->talk.to, "pace %.17g\n", duration);
+}
+
+// As it was when the state was read.
+static void turn(const void *state, ck_Turn *turn) {
+    const Session *session = state;
+    memcpy(turn, session->raw + 6 * (size_t)session->particle_count, sizeof *turn * (size_t)session->rigid_count);
 }
 
 static void release(void *state, int particle) {
@@ -323,6 +345,8 @@ ck_Status ck_outside_command(ck_Engine **engine, const char *name, const char *l
     made->engine.settings = command->settings;
     made->engine.step = step;
     made->engine.read = read_state;
+    made->engine.turn = turn;
+    if (command->hello.terms & CK_TERM_JITTER) made->engine.pace = pace;
     made->engine.release = release;
     made->engine.destroy = end_session;
     *engine = &made->engine;

@@ -125,6 +125,16 @@ static void read_state(const void *state, double *position, double *velocity) {
     loaded->engine->read(loaded->state, position, velocity);
 }
 
+static void pace(void *state, double duration) {
+    Loaded *loaded = state;
+    loaded->engine->pace(loaded->state, duration);
+}
+
+static void turn(const void *state, ck_Turn *turn) {
+    const Loaded *loaded = state;
+    loaded->engine->turn(loaded->state, turn);
+}
+
 static void release(void *state, int particle) {
     Loaded *loaded = state;
     loaded->engine->release(loaded->state, particle);
@@ -194,6 +204,8 @@ static void make_engine(ck_OutsideEngine *made, Library *library) {
     made->engine.step = step;
     made->engine.read = read_state;
     made->engine.release = of->release ? release : NULL;
+    made->engine.pace = of->pace ? pace : NULL;
+    made->engine.turn = of->turn ? turn : NULL;
     made->engine.contact = of->contact ? contact : NULL;
     made->engine.remark = of->remark ? remark : NULL;
     made->engine.destroy = destroy;

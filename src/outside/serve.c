@@ -2,6 +2,7 @@
 
 #include "collider.h"
 #include "outside_words.h"
+#include "rigid.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +15,7 @@ typedef struct Server {
     ck_Settings wanted;
     void *world;   // NULL: not begun
     double *state; // [6*n]
+    ck_Turn *turn; // [rigid bodies]
     char word[64];
 } Server;
 
@@ -90,23 +92,43 @@ static void read_springs(Server *server) {
     }
 }
 
+static void read_collider(Server *server, ck_Collider *collider) {
+    if (!next_word(server)) fail("the scene ends within a collider");
+    while (collider->shape < CK_SHAPE_COUNT && strcmp(server->word, ck_shape_names[collider->shape])) collider->shape++;
+    if (collider->shape == CK_SHAPE_COUNT) fail("a collider of no known shape");
+    vector(server, collider->point);
+    if (collider->shape == CK_PLANE) vector(server, collider->normal);
+    for (int k = 0; k < 3 && collider->shape > CK_SPHERE; k++) vector(server, collider->axes[k]);
+    if (collider->shape > CK_SPHERE) vector(server, collider->half);
+    if (collider->shape != CK_PLANE) collider->radius = number(server);
+    collider->restitution = number(server);
+    collider->friction = number(server);
+}
+
 static void read_colliders(Server *server) {
     ck_Model *model = &server->model;
     model->collider_count = count(server);
     model->colliders = allocate((size_t)model->collider_count, sizeof *model->colliders);
-    for (int i = 0; i < model->collider_count; i++) {
-        ck_Collider *collider = &model->colliders[i];
-        if (!next_word(server)) fail("the scene ends within a collider");
-        while (collider->shape < CK_SHAPE_COUNT && strcmp(server->word, ck_shape_names[collider->shape]))
-            collider->shape++;
-        if (collider->shape == CK_SHAPE_COUNT) fail("a collider of no known shape");
-        vector(server, collider->point);
-        if (collider->shape == CK_PLANE) vector(server, collider->normal);
-        for (int k = 0; k < 3 && collider->shape > CK_SPHERE; k++) vector(server, collider->axes[k]);
-        if (collider->shape > CK_SPHERE) vector(server, collider->half);
-        if (collider->shape != CK_PLANE) collider->radius = number(server);
-        collider->restitution = number(server);
-        collider->friction = number(server);
+    for (int i = 0; i < model->collider_count; i++) read_collider(server, &model->colliders[i]);
+}
+
+// Rigid bodies, whose centres are the last particles, in order.
+static void read_bodies(Server *server) {
+    ck_Model *model = &server->model;
+    model->rigid_count = count(server);
+    model->rigid = allocate((size_t)model->rigid_count, sizeof *model->rigid);
+    server->turn = allocate((size_t)model->rigid_count, sizeof *server->turn);
+    for (int i = 0; i < model->rigid_count; i++) {
+        ck_RigidBody *rigid = &model->rigid[i];
+        rigid->particle = count(server);
+        if (rigid->particle != model->particle_count - model->rigid_count + i) fail("a body of no particle of its own");
+        read_collider(server, &rigid->shape);
+        for (int k = 0; k < 3 && rigid->shape.shape == CK_SPHERE; k++) rigid->shape.axes[k][k] = 1;
+        vector(server, rigid->spin);
+        vector(server, rigid->inertia);
+        rigid->hung_count = count(server);
+        rigid->hung = allocate((size_t)rigid->hung_count, sizeof *rigid->hung);
+        for (int k = 0; k < rigid->hung_count; k++) rigid->hung[k] = count(server);
     }
 }
 
@@ -236,6 +258,7 @@ static unsigned terms_of(const ck_Model *model) {
     if (model->driven_count) terms |= CK_TERM_MOVES;
     if (model->hinge_count) terms |= CK_TERM_BENDING;
     if (model->wind.face_count) terms |= CK_TERM_WIND;
+    if (model->rigid_count) terms |= CK_TERM_BODIES;
     if (memcmp(model->gravity, none, sizeof none)) terms |= CK_TERM_GRAVITY;
     if (memcmp(model->force, none, sizeof none)) terms |= CK_TERM_FORCE;
     if (model->drag > 0) terms |= CK_TERM_DRAG;
@@ -283,6 +306,8 @@ static void read_scene(Server *server) {
             read_moving(server);
         else if (!strcmp(word, "colliders"))
             read_colliders(server);
+        else if (!strcmp(word, "bodies"))
+            read_bodies(server);
         else if (!strcmp(word, "setting"))
             read_setting(server);
     }
@@ -333,6 +358,10 @@ static void tell_state(const Server *server) {
     const size_t numbers = 3 * (size_t)server->model.particle_count;
     server->engine->read(server->world, server->state, server->state + numbers);
     fwrite(server->state, sizeof *server->state, 2 * numbers, stdout);
+    if (server->engine->turn && server->turn) {
+        server->engine->turn(server->world, server->turn);
+        fwrite(server->turn, sizeof *server->turn, (size_t)server->model.rigid_count, stdout);
+    }
 }
 
 // A word that needs a world.
@@ -340,6 +369,8 @@ static void serve_world(Server *server) {
     if (!server->world) fail("it must begin first");
     if (!strcmp(server->word, "step"))
         printf(server->engine->step(server->world) == CK_STEP_OK ? "ok\n" : "diverged\n");
+    else if (!strcmp(server->word, "pace") && server->engine->pace)
+        server->engine->pace(server->world, number(server));
     else if (!strcmp(server->word, "read"))
         tell_state(server);
     else if (!strcmp(server->word, "release")) {

@@ -23,6 +23,8 @@ const char *ck_scene_resize_refusal(const ck_SceneFile *file, double share) {
     bool is_numbered = has_number(file->pins, file->pins_count);
     for (uint32_t i = 0; i < file->moves_count; i++)
         is_numbered |= has_number(file->moves[i].pins, file->moves[i].pins_count);
+    for (uint32_t i = 0; i < file->bodies_count; i++)
+        is_numbered |= has_number(file->bodies[i].hang, file->bodies[i].hang_count);
     if (is_numbered)
         return "its pins are numbered, and would be others: name a corner, an edge or a place, as 'y > 0.5'";
     if (file->release_count) return "it lets pins go";

@@ -154,6 +154,16 @@ typedef struct ck_SceneCollider {
     ck_ScenePath *path; // NULL: it stays
 } ck_SceneCollider;
 
+// A rigid body that moves freely: a sphere or a box.
+typedef struct ck_SceneRigidBody {
+    ck_SceneSphere *sphere;
+    ck_SceneBox *box;
+    double mass;             // kg
+    double *velocity, *spin; // [3] m/s, rad/s; NULL: none
+    char **hang;             // nodes that springs join to its centre
+    uint32_t hang_count;
+} ck_SceneRigidBody;
+
 typedef struct ck_SceneMove {
     char **pins;
     uint32_t pins_count;
@@ -165,6 +175,12 @@ typedef struct ck_SceneRelease {
     char **pins;
     uint32_t pins_count;
 } ck_SceneRelease;
+
+// What the scene is from a time on.
+typedef struct ck_SceneChange {
+    double at; // s
+    char *set; // @KEY=VALUE@KEY=VALUE, as after a scene's file
+} ck_SceneChange;
 
 // A value that was measured of the whole body, and its standard uncertainty.
 typedef struct ck_SceneMeasure {
@@ -180,6 +196,8 @@ typedef struct ck_SceneMeasured {
 typedef struct ck_SceneTime {
     double duration, step; // s
     double fps;            // frames a second, in place of step; 0: step is given
+    double jitter;         // a frame comes in two steps of (1 ± jitter)/2 of it at most; 0: in one
+    uint32_t seed;         // of that
 } ck_SceneTime;
 
 // The part of a scene that the file's schema fills.
@@ -202,10 +220,14 @@ typedef struct ck_SceneFile {
     double drag;                        // 1/s
     ck_SceneCollider *colliders;
     uint32_t colliders_count;
+    ck_SceneRigidBody *bodies;
+    uint32_t bodies_count;
     ck_SceneMove *moves;
     uint32_t moves_count;
     ck_SceneRelease *release;
     uint32_t release_count;
+    ck_SceneChange *changes;
+    uint32_t changes_count;
     ck_SceneTime time;
     char *truth;
     char **measure;

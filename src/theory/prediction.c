@@ -345,8 +345,9 @@ ck_Status ck_prediction_create(ck_Reference *prediction, const ck_Model *model, 
     const Theory *theory = find_theory(engine->method, truth);
     bool network = !theory && truth->path_count && truth->form->is_static;
     // no theory knows these
-    const unsigned beyond =
-        CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
+    const unsigned beyond = CK_TERM_BENDING | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |
+                            CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES | CK_TERM_JITTER | CK_TERM_CHANGES |
+                            (network ? (unsigned)CK_TERM_COLLIDERS : 0);
     if ((!theory && !network) || left_theory(engine, used) || (model->terms & beyond)) return CK_OK;
     ck_ChildResult child = {.end = CK_CHILD_DONE};
     ck_Status status = ck_trajectory_create(&prediction->trajectory, model, error);

@@ -8,6 +8,7 @@
 #include "springs.h"
 #include "statistics.h"
 #include "time_scale.h"
+#include "touching.h"
 #include "vector.h"
 #include "wind.h"
 
@@ -20,10 +21,11 @@
 
 typedef struct Newton {
     const ck_Model *model;
-    int *unknown; // [n] of each particle, −1 where pinned
-    int unknowns; // free particles
-    double load;  // N
-    double scale; // N/m, the stiffest spring: what μ is measured in
+    ck_Touching *touching; // NULL: nothing can touch
+    int *unknown;          // [n] of each particle, −1 where pinned
+    int unknowns;          // free particles
+    double load;           // N
+    double scale;          // N/m, the stiffest spring: what μ is measured in
     cholmod_common common;
     cholmod_triplet *triplet;
     cholmod_factor *factor;
@@ -59,11 +61,22 @@ static double energy_of(const ck_Model *model, const double *position, double *g
     return energy;
 }
 
-double ck_equilibrium_tolerance(const ck_Model *model) {
+// With that of contact.
+static double whole_energy(const Newton *newton, const double *position, double *gradient) {
+    const double energy = energy_of(newton->model, position, gradient);
+    return newton->touching ? energy + ck_touching_energy(newton->touching, position, gradient) : energy;
+}
+
+// N/m, of springs
+static double stiffest_of(const ck_Model *model) {
     double stiffest = 0;
     for (int i = 0; i < model->spring_count; i++) stiffest = fmax(stiffest, model->springs[i].stiffness);
+    return stiffest;
+}
+
+double ck_equilibrium_tolerance(const ck_Model *model) {
     const double rounding =
-        DBL_EPSILON * stiffest * model->size * sqrt(3.0 * model->particle_count) / ck_stability_load(model);
+        DBL_EPSILON * stiffest_of(model) * model->size * sqrt(3.0 * model->particle_count) / ck_stability_load(model);
     return fmax(CK_EQUILIBRIUM_RESIDUAL, rounding);
 }
 
@@ -117,6 +130,17 @@ static void add_hinge(Newton *newton, const ck_Hinge *hinge) {
         }
 }
 
+// A pair that may touch. Of one that does not, zeros keep the pattern that the factor is of.
+static void add_pair(Newton *newton, const ck_TouchingPair *pair) {
+    double block[9] = {0};
+    const bool touches = ck_touching_block(newton->touching, pair, newton->position, block);
+    const int a = newton->unknown[pair->particle], b = pair->other < 0 ? -1 : newton->unknown[pair->other];
+    if (!touches && (a < 0 || b < 0)) return;
+    if (a >= 0) add_block(newton, a, a, block, 1);
+    if (b >= 0) add_block(newton, b, b, block, 1);
+    if (a >= 0 && b >= 0) add_block(newton, a > b ? a : b, a > b ? b : a, block, -1);
+}
+
 // k·[n·nᵀ + (1 − L/l)·(I − n·nᵀ)] of every spring, and shift on the diagonal.
 static void assemble(Newton *newton, double shift) {
     const ck_Model *model = newton->model;
@@ -137,6 +161,7 @@ static void assemble(Newton *newton, double shift) {
         if (a >= 0 && b >= 0) add_block(newton, a > b ? a : b, a > b ? b : a, block, -1);
     }
     for (int i = 0; i < model->hinge_count; i++) add_hinge(newton, &model->hinges[i]);
+    for (int i = 0; newton->touching && i < newton->touching->count; i++) add_pair(newton, &newton->touching->pairs[i]);
     const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int i = 0; i < newton->unknowns; i++) add_block(newton, i, i, identity, shift);
 }
@@ -153,8 +178,9 @@ static bool factorise(Newton *newton, double shift) {
     return definite;
 }
 
-static ck_Status start_newton(Newton *newton, const ck_Model *model, const double *start) {
-    *newton = (Newton){.model = model, .load = ck_stability_load(model)};
+//   touching  taken over; NULL: none
+static ck_Status start_newton(Newton *newton, const ck_Model *model, ck_Touching *touching, const double *start) {
+    *newton = (Newton){.model = model, .touching = touching, .load = ck_stability_load(model)};
     size_t count = (size_t)model->particle_count;
     newton->unknown = malloc(count * sizeof(int));
     newton->position = malloc(3 * count * sizeof(double));
@@ -166,9 +192,11 @@ static ck_Status start_newton(Newton *newton, const ck_Model *model, const doubl
     if (!newton->unknown || !newton->position || !newton->trial) return CK_NO_MEMORY;
     memcpy(newton->position, start, 3 * count * sizeof(double));
     for (size_t i = 0; i < count; i++) newton->unknown[i] = model->pinned[i] ? -1 : newton->unknowns++;
-    for (int i = 0; i < model->spring_count; i++) newton->scale = fmax(newton->scale, model->springs[i].stiffness);
-    size_t size = 3 * (size_t)newton->unknowns,
-           entries = 21 * (size_t)model->spring_count + 78 * (size_t)model->hinge_count + 6 * (size_t)newton->unknowns;
+    newton->scale = stiffest_of(model);
+    const size_t pairs = newton->touching ? (size_t)newton->touching->count : 0;
+    size_t size = 3 * (size_t)newton->unknowns, entries = 21 * ((size_t)model->spring_count + pairs) +
+                                                          78 * (size_t)model->hinge_count +
+                                                          6 * (size_t)newton->unknowns;
     newton->triplet = cholmod_allocate_triplet(size, size, entries, -1, CHOLMOD_REAL, &newton->common);
     newton->gradient = cholmod_allocate_dense(size, 1, size, CHOLMOD_REAL, &newton->common);
     return newton->triplet && newton->gradient ? CK_OK : CK_NO_MEMORY;
@@ -179,6 +207,7 @@ static void end_newton(Newton *newton) {
     cholmod_free_dense(&newton->gradient, &newton->common);
     cholmod_free_factor(&newton->factor, &newton->common);
     cholmod_finish(&newton->common);
+    ck_touching_free(newton->touching);
     free(newton->unknown);
     free(newton->trial);
     free(newton->position);
@@ -197,7 +226,7 @@ static bool search_line(Newton *newton, const double *step, double *energy, doub
         memcpy(newton->trial, newton->position, 3 * sizeof(double) * (size_t)model->particle_count);
         for (int i = 0; i < model->particle_count; i++)
             if (newton->unknown[i] >= 0) ck_add_scaled(newton->trial + 3 * i, -length, step + 3 * newton->unknown[i]);
-        double trial_energy = energy_of(model, newton->trial, gradient),
+        double trial_energy = whole_energy(newton, newton->trial, gradient),
                trial_residual = norm_of_free(model, gradient) / newton->load;
         bool flat = fabs(trial_energy - *energy) <= 1e-12 * fmax(fabs(*energy), newton->load * model->size * 1e-3);
         if (!(trial_energy < *energy && !flat) && !(flat && trial_residual < *residual)) continue;
@@ -216,7 +245,7 @@ static bool search_line(Newton *newton, const double *step, double *energy, doub
 static int iterate(Newton *newton, double *energy, double *residual, double *gradient) {
     double shift = 0;
     int iteration = 0;
-    *energy = energy_of(newton->model, newton->position, gradient);
+    *energy = whole_energy(newton, newton->position, gradient);
     *residual = norm_of_free(newton->model, gradient) / newton->load;
     for (; iteration < MAX_ITERATIONS && !ck_child_interrupted; iteration++) {
         bool definite = factorise(newton, shift);
@@ -224,7 +253,7 @@ static int iterate(Newton *newton, double *energy, double *residual, double *gra
             shift = fmax(4 * shift, 1e-6 * newton->scale);
             definite = factorise(newton, shift);
         }
-        energy_of(newton->model, newton->position, gradient);
+        whole_energy(newton, newton->position, gradient);
         pack(newton, gradient);
         cholmod_dense *step =
             definite ? cholmod_solve(CHOLMOD_A, newton->factor, newton->gradient, &newton->common) : NULL;
@@ -246,12 +275,44 @@ static double *about_first(const ck_Model *model, const double *position) {
 }
 
 static ck_Status check(const ck_Model *model, ck_Error *error) {
-    const unsigned beyond = CK_TERM_RIGID | CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
-    if (!(model->terms & beyond) && model->pin_count && ck_stability_load(model) > 0 && !ck_wind_blows(model))
-        return CK_OK;
-    return ck_fail(error, CK_REFUSED,
-                   "%s: equilibrium needs pins that stay, a load, springs that stretch, still air and no colliders",
-                   model->name);
+    const unsigned beyond = CK_TERM_RIGID | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS;
+    if ((model->terms & beyond) || !model->pin_count || !(ck_stability_load(model) > 0) || ck_wind_blows(model))
+        return ck_fail(error, CK_REFUSED,
+                       "%s: equilibrium needs pins that stay, a load, springs that stretch, still air and colliders "
+                       "that stay",
+                       model->name);
+    bool rubs = false, turns = false;
+    for (int i = 0; i < model->collider_count; i++) rubs |= model->colliders[i].friction > 0;
+    for (int i = 0; i < model->rigid_count; i++) {
+        rubs |= model->rigid[i].shape.friction > 0;
+        turns |= model->rigid[i].shape.shape != CK_SPHERE;
+    }
+    if (rubs)
+        return ck_fail(error, CK_REFUSED, "%s: with friction a body rests in many places: there is no one equilibrium",
+                       model->name);
+    return turns
+               ? ck_fail(error, CK_REFUSED, "%s: how a box that moves rests is not solved; take a sphere", model->name)
+               : CK_OK;
+}
+
+// Rounds in which forces of contact are found, by the stiffness below a hundredth of the rest of the last each; and how
+// far gaps may be off, / size.
+#define CONTACT_ROUNDS 60
+#define CONTACT_STIFFNESS 100
+#define CONTACT_GAP 1e-14
+
+// Newton, and where something may touch again with the forces that it makes, until these stay.
+static void minimise(Newton *newton, ck_Equilibrium *equilibrium, double *gradient) {
+    double last = INFINITY;
+    for (int round = 0; round < CONTACT_ROUNDS && !ck_child_interrupted; round++) {
+        equilibrium->iterations += iterate(newton, &equilibrium->energy, &equilibrium->residual, gradient);
+        if (!newton->touching) return;
+        const double off = ck_touching_update(newton->touching, newton->position) / newton->model->size;
+        equilibrium->gap = off;
+        // what is rounded does not get less
+        if (off <= CONTACT_GAP || (off < 1e-11 && off > 0.5 * last)) return;
+        last = off;
+    }
 }
 
 ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
@@ -262,18 +323,23 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
     ck_Model near = *model;
     near.position = about_first(model, model->position);
     double *begin = about_first(model, start);
-    ck_Status status = near.position && begin ? start_newton(&newton, &near, begin) : CK_NO_MEMORY;
+    ck_Touching *touching = NULL;
+    ck_Status status = near.position && begin ? ck_touching_create(&touching, model, model->position,
+                                                                   CONTACT_STIFFNESS * stiffest_of(model))
+                                              : CK_NO_MEMORY;
+    if (!status) status = start_newton(&newton, &near, touching, begin);
     double *gradient = malloc(3 * sizeof(double) * (size_t)model->particle_count);
     if (status || !gradient) {
         status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
         goto cleanup;
     }
-    equilibrium->iterations = iterate(&newton, &equilibrium->energy, &equilibrium->residual, gradient);
+    minimise(&newton, equilibrium, gradient);
     equilibrium->is_minimum = factorise(&newton, 0);
     equilibrium->position = newton.position;
     newton.position = NULL;
     for (int i = 0; i < 3 * model->particle_count; i++) equilibrium->position[i] += model->position[i % 3];
-    if (!(equilibrium->residual <= ck_equilibrium_tolerance(model)) || !equilibrium->is_minimum)
+    if (!(equilibrium->gap <= 1e-9) || !(equilibrium->residual <= ck_equilibrium_tolerance(model)) ||
+        !equilibrium->is_minimum)
         status =
             ck_fail(error, CK_REFUSED, "%s: no stable equilibrium: Newton stopped at %.2g of the load%s", model->name,
                     equilibrium->residual, equilibrium->is_minimum ? "" : ", where the energy has no minimum");
@@ -292,7 +358,7 @@ struct ck_Stiffness {
 ck_Status ck_stiffness_create(ck_Stiffness **out, const ck_Model *model, const double *position) {
     ck_Stiffness *stiffness = *out = calloc(1, sizeof *stiffness);
     if (!stiffness) return CK_NO_MEMORY;
-    ck_Status status = start_newton(&stiffness->newton, model, position);
+    ck_Status status = start_newton(&stiffness->newton, model, NULL, position);
     if (!status && !factorise(&stiffness->newton, 0)) status = CK_REFUSED;
     if (!status) return CK_OK;
     ck_stiffness_destroy(stiffness);
@@ -324,7 +390,19 @@ typedef struct Fall {
     const ck_Model *model;
     double dt;
     double *position, *velocity, *acceleration, *predicted;
+    const ck_Touching *touching; // what is inside of a surface is pushed out by springs; NULL: nothing can be
 } Fall;
+
+static void accelerate(const Fall *fall, const double *velocity) {
+    const ck_Model *model = fall->model;
+    ck_springs_accelerate(model, fall->position, velocity, fall->acceleration);
+    if (!fall->touching) return;
+    // by mass, as accelerations are
+    for (int i = 0; i < 3 * model->particle_count; i++) fall->acceleration[i] *= -model->mass[i / 3];
+    ck_touching_energy(fall->touching, fall->position, fall->acceleration);
+    for (int i = 0; i < 3 * model->particle_count; i++)
+        fall->acceleration[i] *= model->pinned[i / 3] ? 0 : -1 / model->mass[i / 3];
+}
 
 // Velocity Verlet with the velocity predicted: of second order with damping, too. No engine's code: which rest a body
 // falls into is for the truth to say. Source: Groot and Warren 1997, eq. 10 with λ = 1.
@@ -335,7 +413,7 @@ static void fall_by_a_step(const Fall *fall) {
         fall->predicted[i] = fall->velocity[i] + dt * fall->acceleration[i];
         fall->velocity[i] += 0.5 * dt * fall->acceleration[i];
     }
-    ck_springs_accelerate(fall->model, fall->position, fall->predicted, fall->acceleration);
+    accelerate(fall, fall->predicted);
     for (int i = 0; i < 3 * fall->model->particle_count; i++) fall->velocity[i] += 0.5 * dt * fall->acceleration[i];
 }
 
@@ -375,7 +453,13 @@ static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, doub
         free(memory);
         return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
     }
-    const Fall fall = {&moved, model->step / substeps, position, memory, memory + count, memory + 2 * count};
+    ck_Touching *touching;
+    const double origin[3] = {0, 0, 0};
+    if (ck_touching_create(&touching, model, origin, stiffest_of(model))) {
+        free(memory);
+        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    }
+    const Fall fall = {&moved, model->step / substeps, position, memory, memory + count, memory + 2 * count, touching};
     memcpy(position, model->position, count * sizeof *position);
     memcpy(fall.velocity, model->velocity, count * sizeof *memory);
     ck_Random random = ck_random_seed(seed);
@@ -383,7 +467,7 @@ static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, doub
         double offset = nudge * (2 * ck_random_unit(&random) - 1);
         if (!model->pinned[i / 3]) position[i] += offset;
     }
-    ck_springs_accelerate(&moved, position, fall.velocity, fall.acceleration);
+    accelerate(&fall, fall.velocity);
     ck_Status status = CK_OK;
     double still = ck_metric_still_speed(model), speed = INFINITY;
     for (int frame = 0; frame < model->frame_count && !(frame > 10 && speed < still) && !status; frame++) {
@@ -392,6 +476,7 @@ static ck_Status settle(const ck_Model *model, double nudge, uint64_t seed, doub
         status = speed >= 0 ? ck_child_check(error)
                             : ck_fail(error, CK_REFUSED, "%s: diverges on the way to its equilibrium", model->name);
     }
+    ck_touching_free(touching);
     free(memory);
     return status;
 }

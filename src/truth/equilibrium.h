@@ -18,14 +18,16 @@ typedef struct ck_Equilibrium {
     double residual;  // |Σ force| over free particles / total load
     double energy;    // J, elastic and of the field
     int iterations;   // of Newton
+    double gap;       // how far contact is off: gaps that are not there or forces that are, / size
     bool is_minimum;  // the Hessian at position is positive definite
 } ck_Equilibrium;
 
 // Minimises ½k(l − L)² + ½s(angle − rest)² − (m·g + F)·x from a start by Newton with a sparse Cholesky factorisation.
+// Contact without friction is added as an augmented Lagrangian.
 // The full Hessian, with μ·I added only where it is not positive definite (slack springs make it so); line search on
 // the energy.
 //   start  [3*n] m
-// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, colliders, wind or no pins, or Newton does not get
+// Errors: CK_NO_MEMORY; CK_REFUSED where the model has rigid bars, friction, wind or no pins, or Newton does not get
 // there. Free with ck_equilibrium_free in any case.
 ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *model, const double *start,
                                ck_Error *error);

@@ -25,21 +25,26 @@
 #define CLOSED "closed form"
 // What a form must say that it knows.
 #define EXTRAS                                                                                                         \
-    (CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS)
+    (CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_MOVES |                          \
+     CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES | CK_TERM_CHANGES)
+// What an integrator knows of it.
+#define INTEGRATED (EXTRAS & ~(unsigned)CK_TERM_CHANGES)
 
 // Adding a truth is one function and one row here.
 static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
-     .terms = CK_TERM_WIND | CK_TERM_PULL_ONLY, .check = ck_truth_equilibrium_check,
-     .solve = ck_truth_solve_equilibrium},
+     .terms = CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_COLLIDERS | CK_TERM_BODIES,
+     .check = ck_truth_equilibrium_check, .solve = ck_truth_solve_equilibrium},
     {"trajectory", "trajectory",
      "classical Runge-Kutta (Kutta 1901), bars as constraints, step halved until two runs agree to 1e-9", false,
-     .terms = EXTRAS, .is_chaotic = true, .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
+     .terms = INTEGRATED, .is_chaotic = true, .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
     {"converged", "trajectory",
      "the same of a scene in contact: impacts, slip and stick located in time, Coulomb friction", false,
-     .terms = EXTRAS, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory},
+     .terms = INTEGRATED, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
-     true, .terms = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS,
+     true,
+     .terms = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS |
+              CK_TERM_BODIES,
      .check = ck_truth_rest_check},
     {"vertical_chain", CLOSED, "u_j = [m*g*(j*N - j*(j-1)/2) + j*M*g]/k: sum of the weights below each spring", true,
      .terms = CK_TERM_PULL_ONLY, .at = ck_truth_vertical_chain},

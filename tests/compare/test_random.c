@@ -136,6 +136,26 @@ static void add_colliders(Text *text, double spacing) {
     }
 }
 
+// Returns how many.
+static int add_bodies(Text *text, double spacing) {
+    const int count = one_in(text, 4) ? pick_count(text, 1, 2) : 0;
+    if (count) add(text, "bodies:\n");
+    for (int i = 0; i < count; i++) {
+        const double above = (2 + 30 * i) * spacing, size = pick_power(text, -2, 1) * spacing;
+        if (one_in(text, 2) || i)
+            add(text, "  - {sphere: {center: [%.6g, %.6g, 0], radius: %.6g", spacing, above + size, size);
+        else
+            add(text, "  - {box: {center: [0, %.6g, 0], size: [%.6g, %.6g, %.6g], along: [1, %.3f, 0]",
+                above + 2 * size, 2 * size, size, size, pick(text, -1, 1));
+        add(text, ", friction: %.3f, restitution: %.3f}, mass: %.6g, ", pick(text, 0, 1), pick(text, 0, 1),
+            pick_power(text, -6, 3));
+        add_vector(text, "velocity: ", 10 * spacing, ", ");
+        add_vector(text, "spin: ", 10, "");
+        add(text, "%s}\n", one_in(text, 4) ? ", hang: ['0']" : "");
+    }
+    return count;
+}
+
 static void write_scene(Text *text, uint64_t seed) {
     static const char *const truths[] = {"equilibrium", "trajectory", "converged", "rest"};
     bool is_cloth;
@@ -158,7 +178,14 @@ static void write_scene(Text *text, uint64_t seed) {
     if (one_in(text, 3)) add(text, "drag: %.6g\n", pick_power(text, -2, 3));
     if (one_in(text, 6)) add(text, "noise: {amplitude: %.6g, seed: 3}\n", 1e-3 * spacing);
     add_colliders(text, spacing);
-    add(text, "time: {duration: %.1f, fps: %d}\n", 0.1 * pick_count(text, 2, 5), one_in(text, 2) ? 60 : 20);
+    const int bodies = add_bodies(text, spacing);
+    add(text, "time: {duration: %.1f, fps: %d", 0.1 * pick_count(text, 2, 5), one_in(text, 2) ? 60 : 20);
+    if (one_in(text, 8)) add(text, ", jitter: %.3f", pick(text, 0, 1));
+    add(text, "}\n");
+    const bool changes = one_in(text, 8);
+    if (changes) add(text, "changes: [{at: 0.05, set: '@gravity=[1, -3, 0]@drag=%.3g'}]\n", pick_power(text, -2, 2));
+    // most truths know none of these
+    if (bodies || changes) return;
     if (!one_in(text, 3)) add(text, "truth: %s\n", truths[pick_count(text, 0, 3)]);
 }
 

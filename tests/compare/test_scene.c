@@ -3,6 +3,7 @@
 
 #include "files.h"
 #include "scene_schema.h"
+#include "segment.h"
 #include "vector.h"
 
 #include "scene.h"
@@ -291,14 +292,20 @@ static void test_every_key(void **state) {
         "            {cylinder: {point: [0, -3, 0], axis: [0, 0, 3], radius: 0.3, restitution: 0.2, friction: 0.5}},\n"
         "            {box: {center: [0, -4, 0], size: [1, 0.5, 2], along: [0, 0, 1], up: [0, 1, 1], rounding: 0.1, "
         "restitution: 0.2, friction: 0.5}}]\n"
+        "bodies: [{sphere: {center: [9, 9, 9], radius: 0.5, restitution: 0.2, friction: 0.5}, mass: 2, velocity: [1, "
+        "0, 0],\n  spin: [0, 1, 0], hang: [bottom_left]}]\n"
         "moves: [{pins: [5], path: {amplitude: [0, 0, 1], frequency: 0.1}}]\n"
-        "release: [{at: 1, pins: [top_left, 2:3]}]\ntime: {duration: 4, step: 0.5}\nmeasure: [sag]\n"
+        "release: [{at: 1, pins: [top_left, 2:3]}]\nchanges: [{at: 2, set: '@drag=3'}]\n"
+        "time: {duration: 4, step: 0.5}\nmeasure: [sag]\n"
         "settings: {ode-quick: {substeps: 16, iterations: 20, relaxation: 1.2}}\n");
     const ck_Model *model = &comparison.model;
-    assert_int_equal(model->particle_count, 12);
+    assert_int_equal(model->particle_count, 12 + 1);
     assert_int_equal(model->pin_count, 6); // four, one, one
     // 9 + 8 structural, 2 × 6 shear, 6 + 4 bend
-    assert_int_equal(model->spring_count, 17 + 12 + 10);
+    assert_int_equal(model->spring_count, 17 + 12 + 10 + 1);
+    assert_int_equal(model->springs[39].a, 8);
+    assert_int_equal(model->springs[39].b, 12);
+    assert_near("inertia", model->rigid[0].inertia[1], 0.4 * 2 * 0.25, 1e-15);
     // 3 × 2 along rows, 1 × 4 along columns, 6 squares
     assert_int_equal(model->hinge_count, 6 + 4 + 6);
     assert_near("twist", model->hinges[0].stiffness, 0.4, 0);
@@ -315,8 +322,11 @@ static void test_every_key(void **state) {
     assert_int_equal(model->releases[0].particles[1], 11);
     assert_int_equal(ck_engine_scene_settings(ck_engine_find("ode-quick"), &comparison.scene).iterations, 20);
     assert_int_equal(ck_engine_scene_settings(ck_engine_find("ode-direct"), &comparison.scene).iterations, 0);
+    assert_int_equal(model->segments[0].frame, 4);
+    assert_near("drag later", model->segments[0].model.drag, 3, 0);
+    // rigid bars are no springs, and uneven steps know no paths
     unsigned all = (1u << CK_TERM_COUNT) - 1;
-    assert_int_equal(model->terms, all & ~(unsigned)CK_TERM_RIGID);
+    assert_int_equal(model->terms, all & ~(unsigned)(CK_TERM_RIGID | CK_TERM_JITTER));
     ck_comparison_free(&comparison);
 }
 

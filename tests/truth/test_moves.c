@@ -19,6 +19,11 @@ static const char thrown[] = ROPE "moves: [{pins: [first], path: {velocity: [3, 
 static const char traced[] = ROPE "moves: [{pins: [first], path: {points: [[0, 1, 1, 1], [0.1, 1.2, 1, 1], "
                                   "[0.15, 1.3, 1.1, 1], [0.3, 1.2, 1.1, 0.9], [0.4, 1, 1, 1]]}}]\n";
 
+// Frames in two uneven steps each, up to four times as long as each other.
+static const char uneven[] = "name: u\nrope: {particles: 6, spacing: 0.2, mass: 0.6}\n"
+                             "springs: {stiffness: 300, damping: 0.5}\npins: [first]\ngravity: [3, -9.81, 0]\n"
+                             "time: {duration: 0.5, fps: 40, jitter: 0.6, seed: 3}\n";
+
 // The root mean square distance of all particles over the frames, m.
 static double off_of(const ck_Model *model, const ck_Engine *engine, uint32_t substeps, const ck_Trajectory *truth) {
     ck_Settings settings = {.substeps = substeps};
@@ -79,6 +84,20 @@ static void test_thrown(void **state) {
 static void test_traced(void **state) {
     (void)state;
     converge(traced);
+}
+
+static void test_uneven(void **state) {
+    (void)state;
+    converge(uneven);
+    // the two steps are the frame, and differ from one frame to the next
+    Fixture fixture;
+    double parts[2], other[2];
+    fixture_load(&fixture, uneven);
+    ck_model_parts(&fixture.model, 0, parts);
+    ck_model_parts(&fixture.model, 1, other);
+    assert_near("a frame", parts[0] + parts[1], 0.025, 1e-17);
+    assert_true(fabs(parts[0] - 0.0125) <= 0.6 * 0.0125 && parts[0] != other[0]);
+    fixture_free(&fixture);
 }
 
 // A path of points goes through them, is smooth there, and at rest before and after.
@@ -217,9 +236,9 @@ static void test_refused(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pulled), cmocka_unit_test(test_shaken),
-                                       cmocka_unit_test(test_thrown), cmocka_unit_test(test_traced),
-                                       cmocka_unit_test(test_path),   cmocka_unit_test(test_file),
-                                       cmocka_unit_test(test_fast),   cmocka_unit_test(test_refused)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pulled), cmocka_unit_test(test_shaken), cmocka_unit_test(test_thrown),
+        cmocka_unit_test(test_traced), cmocka_unit_test(test_uneven), cmocka_unit_test(test_path),
+        cmocka_unit_test(test_file),   cmocka_unit_test(test_fast),   cmocka_unit_test(test_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,9 +2,11 @@
 
 #include "collider.h"
 #include "path.h"
+#include "rigid.h"
 #include "shape.h"
 #include "vector.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static bool is_pinned_at(const ck_Model *model, int particle, int frame) {
@@ -15,9 +17,10 @@ static bool is_pinned_at(const ck_Model *model, int particle, int frame) {
     return true;
 }
 
-// The gap of a particle at a frame to the nearest collider, m; INFINITY where it is pinned then.
+// The gap of a particle at a frame to the nearest collider, m; INFINITY where it is pinned then, or is no cloth's.
 static double gap_of(const ck_Model *model, const double *position, int particle, int frame) {
     double smallest = INFINITY, normal[3], v[3], a[3];
+    if (particle >= ck_model_cloth_count(model)) return smallest;
     for (int j = 0; j < model->collider_count && !is_pinned_at(model, particle, frame); j++) {
         const ck_Collider now = ck_collider_at(&model->colliders[j], frame * model->step, -1, v, a);
         smallest = fmin(smallest, ck_collider_gap(&now, position + 3 * particle, normal));
@@ -25,9 +28,33 @@ static double gap_of(const ck_Model *model, const double *position, int particle
     return smallest;
 }
 
-// the smallest gap of all particles that are free at a frame to all colliders, m
-static double smallest_gap(const ck_Model *model, const double *position, int frame) {
-    double smallest = INFINITY;
+double ck_metric_rigid_gap(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+    const size_t bodies = (size_t)model->rigid_count;
+    const double *position = ck_trajectory_position(trajectory, frame);
+    const ck_Turn *turn = ck_trajectory_turn(trajectory, frame);
+    double smallest = INFINITY, v[3], a[3];
+    if (!bodies) return smallest;
+    ck_Collider *now = malloc(sizeof *now * (bodies + (size_t)model->collider_count));
+    ck_Touch *touches = malloc(sizeof *touches * ck_rigid_most_touches(model));
+    for (int i = 0; i < model->collider_count && now; i++)
+        now[bodies + (size_t)i] = ck_collider_at(&model->colliders[i], frame * model->step, -1, v, a);
+    for (int i = 0; i < model->rigid_count && now; i++)
+        now[i] = ck_rigid_place(&model->rigid[i], position + 3 * model->rigid[i].particle, turn[i].rotation);
+    const int count =
+        now && touches ? ck_rigid_find_touches(model, position, now, now + bodies, model->size, touches) : 0;
+    for (int i = 0; i < count; i++) {
+        const bool is_pin = touches[i].rigid < 0 && is_pinned_at(model, touches[i].particle, frame);
+        if (!is_pin) smallest = fmin(smallest, touches[i].gap);
+    }
+    free(now);
+    free(touches);
+    return smallest;
+}
+
+// the smallest gap of all particles that are free at a frame to all colliders, and that of rigid bodies, m
+static double smallest_gap(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+    const double *position = ck_trajectory_position(trajectory, frame);
+    double smallest = ck_metric_rigid_gap(model, trajectory, frame);
     for (int i = 0; i < model->particle_count; i++) smallest = fmin(smallest, gap_of(model, position, i, frame));
     return isfinite(smallest) ? smallest : NAN;
 }
@@ -38,7 +65,7 @@ static double smallest_gap(const ck_Model *model, const double *position, int fr
 double ck_metric_penetration_time_over(const ck_Model *model, const ck_Trajectory *trajectory,
                                        const ck_Reference *reference) {
     int deep = 0;
-    if (!model->collider_count) return NAN;
+    if (!model->collider_count && !model->rigid_count) return NAN;
     for (int frame = 0; frame < trajectory->frame_count; frame++)
         deep += ck_metric_penetration_at(model, trajectory, frame, reference) > NEAR;
     return deep * trajectory->step;
@@ -60,7 +87,7 @@ double ck_metric_contact_share_at(const ck_Model *model, const ck_Trajectory *tr
 double ck_metric_height_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                            const ck_Reference *reference) {
     (void)reference;
-    return smallest_gap(model, ck_trajectory_position(trajectory, frame), frame) / model->spacing;
+    return smallest_gap(model, trajectory, frame) / model->spacing;
 }
 
 double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
@@ -70,6 +97,7 @@ double ck_metric_penetration_at(const ck_Model *model, const ck_Trajectory *traj
 }
 
 static const ck_Collider *first_plane(const ck_Model *model) {
+    if (model->rigid_count) return NULL; // they would be part of what bounces
     for (int i = 0; i < model->collider_count; i++)
         if (model->colliders[i].shape == CK_PLANE && !model->pin_count) return &model->colliders[i];
     return NULL;
@@ -218,7 +246,7 @@ double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *traj
     (void)reference;
     int solids = 0, passed = 0;
     for (int j = 0; j < model->collider_count; j++) solids += model->colliders[j].shape != CK_PLANE;
-    for (int i = 0; i < model->particle_count && solids; i++) {
+    for (int i = 0; i < ck_model_cloth_count(model) && solids; i++) {
         bool through = false;
         if (ck_model_is_held(model, i)) continue; // a pin may be inside
         for (int frame = 0; frame + 1 < trajectory->frame_count && !through; frame++)
@@ -228,7 +256,7 @@ double ck_metric_tunnelled_over(const ck_Model *model, const ck_Trajectory *traj
                                                                  -0.5 * ck_collider_breadth(&model->colliders[j]);
         passed += through;
     }
-    return solids ? (double)passed / model->particle_count : NAN;
+    return solids ? (double)passed / ck_model_cloth_count(model) : NAN;
 }
 
 // A parabola of least squares through an end's way along the rope, over 2·half + 1 frames: m, m/s and m/s² at the

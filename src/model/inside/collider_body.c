@@ -56,8 +56,8 @@ static ck_Status set_cylinder(ck_Collider *collider, const ck_SceneCylinder *fro
     return status;
 }
 
-static ck_Status set_box(ck_Collider *collider, const ck_SceneBox *from, const ck_Scene *scene, const char *at,
-                         ck_Error *error) {
+ck_Status ck_model_set_box(ck_Collider *collider, const ck_SceneBox *from, const ck_Scene *scene, const char *at,
+                           ck_Error *error) {
     static const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
     char place[64];
     double up[3];
@@ -96,7 +96,7 @@ static ck_Status set_plane(ck_Collider *collider, const ck_ScenePlane *from, con
     return ck_model_unit(collider->normal, from->normal, scene, place, error);
 }
 
-static ck_Status set_sphere(ck_Collider *collider, const ck_SceneSphere *from) {
+ck_Status ck_model_set_sphere(ck_Collider *collider, const ck_SceneSphere *from) {
     collider->shape = CK_SPHERE;
     collider->radius = from->radius;
     memcpy(collider->point, from->center, sizeof collider->point);
@@ -115,10 +115,10 @@ static ck_Status set_collider(ck_Model *model, const ck_Scene *scene, uint32_t i
     snprintf(at, sizeof at, "colliders[%u].%s", index, ck_shape_names[shape]);
     switch (shape) {
     case CK_PLANE: return set_plane(collider, from->plane, scene, at, error);
-    case CK_SPHERE: return set_sphere(collider, from->sphere);
+    case CK_SPHERE: return ck_model_set_sphere(collider, from->sphere);
     case CK_CAPSULE: return set_capsule(collider, from->capsule, scene, at, error);
     case CK_CYLINDER: return set_cylinder(collider, from->cylinder, scene, at, error);
-    default: return set_box(collider, from->box, scene, at, error);
+    default: return ck_model_set_box(collider, from->box, scene, at, error);
     }
 }
 

@@ -6,6 +6,7 @@
 
 static const char *const ck_term_words[CK_TERM_COUNT] = {
     "springs", "rigid",   "damping", "gravity", "force", "drag",  "velocity",         "plane",
-    "sphere",  "release", "bending", "wind",    "slack", "moves", "moving_colliders", "solids"};
+    "sphere",  "release", "bending", "wind",    "slack", "moves", "moving_colliders", "solids",
+    "bodies",  "uneven",  "changes"};
 
 #endif

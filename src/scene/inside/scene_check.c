@@ -236,6 +236,18 @@ static ck_Status check_one_of(const Check *check, yaml_node_t *mapping, const ch
     return ck_document_fail(check->document, mapping, check->error, "%s has none of %s", where, wanted);
 }
 
+// The same of each entry of a list, where the scene has it.
+static ck_Status check_each(const Check *check, const char *list, const char *const *keys, const char *where,
+                            const char *wanted) {
+    yaml_node_t *entries = ck_document_find(check->document, list);
+    ck_Status status = CK_OK;
+    if (entries->type != YAML_SEQUENCE_NODE) return CK_OK;
+    for (yaml_node_item_t *item = entries->data.sequence.items.start;
+         item < entries->data.sequence.items.top && !status; item++)
+        status = check_one_of(check, yaml_document_get_node(check->yaml, *item), keys, where, wanted);
+    return status;
+}
+
 ck_Status ck_scene_check(const ck_Document *document, const cyaml_schema_value_t *schema, ck_Error *error) {
     Check check = {.document = document, .yaml = (yaml_document_t *)&document->yaml, .error = error};
     yaml_node_t *root = yaml_document_get_root_node(check.yaml);
@@ -249,11 +261,9 @@ ck_Status ck_scene_check(const ck_Document *document, const cyaml_schema_value_t
         status = check_one_of(&check, ck_document_find(document, "time"), clocks, "time",
                               "step and fps; it needs one of the two");
     static const char *const shapes[] = {"plane", "sphere", "capsule", "cylinder", "box", NULL};
-    yaml_node_t *colliders = ck_document_find(document, "colliders");
-    if (status || colliders->type != YAML_SEQUENCE_NODE) return status;
-    for (yaml_node_item_t *item = colliders->data.sequence.items.start;
-         item < colliders->data.sequence.items.top && !status; item++)
-        status = check_one_of(&check, yaml_document_get_node(check.yaml, *item), shapes, "a collider",
-                              "plane, sphere, capsule, cylinder and box");
+    static const char *const solids[] = {"sphere", "box", NULL};
+    if (!status)
+        status = check_each(&check, "colliders", shapes, "a collider", "plane, sphere, capsule, cylinder and box");
+    if (!status) status = check_each(&check, "bodies", solids, "a rigid body", "sphere and box");
     return status;
 }

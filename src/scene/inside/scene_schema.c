@@ -59,6 +59,14 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"colliders[].box.rounding", CK_RANGE_NOT_NEGATIVE},
     {"colliders[].box.restitution", CK_RANGE_UNIT},
     {"colliders[].box.friction", CK_RANGE_NOT_NEGATIVE},
+    {"bodies[].mass", CK_RANGE_POSITIVE},
+    {"bodies[].sphere.radius", CK_RANGE_POSITIVE},
+    {"bodies[].sphere.restitution", CK_RANGE_UNIT},
+    {"bodies[].sphere.friction", CK_RANGE_NOT_NEGATIVE},
+    {"bodies[].box.size", CK_RANGE_POSITIVE},
+    {"bodies[].box.rounding", CK_RANGE_NOT_NEGATIVE},
+    {"bodies[].box.restitution", CK_RANGE_UNIT},
+    {"bodies[].box.friction", CK_RANGE_NOT_NEGATIVE},
     {"moves[].path.from", CK_RANGE_NOT_NEGATIVE},
     {"moves[].path.to", CK_RANGE_POSITIVE},
     {"moves[].path.frequency", CK_RANGE_POSITIVE},
@@ -66,9 +74,11 @@ const ck_RangeRule ck_scene_ranges[] = {
     {"colliders[].path.to", CK_RANGE_POSITIVE},
     {"colliders[].path.frequency", CK_RANGE_POSITIVE},
     {"release[].at", CK_RANGE_NOT_NEGATIVE},
+    {"changes[].at", CK_RANGE_POSITIVE},
     {"time.duration", CK_RANGE_POSITIVE},
     {"time.step", CK_RANGE_POSITIVE},
     {"time.fps", CK_RANGE_POSITIVE},
+    {"time.jitter", CK_RANGE_NOT_NEGATIVE},
     {"measured.sag.uncertainty", CK_RANGE_POSITIVE},
     {"measured.stretch_max.uncertainty", CK_RANGE_POSITIVE},
     {"measured.period.uncertainty", CK_RANGE_POSITIVE},
@@ -273,12 +283,30 @@ static const cyaml_schema_field_t collider_fields[] = {
 static const cyaml_schema_value_t collider = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneCollider, collider_fields)};
 
+static const cyaml_schema_field_t body_fields[] = {
+    CYAML_FIELD_MAPPING_PTR("sphere", OPTIONAL, ck_SceneRigidBody, sphere, sphere_fields),
+    CYAML_FIELD_MAPPING_PTR("box", OPTIONAL, ck_SceneRigidBody, box, box_fields),
+    CYAML_FIELD_FLOAT("mass", REQUIRED, ck_SceneRigidBody, mass),
+    CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRigidBody, velocity, &number, 3),
+    CYAML_FIELD_SEQUENCE_FIXED("spin", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRigidBody, spin, &number, 3),
+    CYAML_FIELD_SEQUENCE("hang", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneRigidBody, hang, &text, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t body = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneRigidBody, body_fields)};
+
 static const cyaml_schema_field_t release_fields[] = {
     CYAML_FIELD_FLOAT("at", REQUIRED, ck_SceneRelease, at),
     CYAML_FIELD_SEQUENCE("pins", REQUIRED | CYAML_FLAG_POINTER, ck_SceneRelease, pins, &text, 1, CYAML_UNLIMITED),
     CYAML_FIELD_END,
 };
 static const cyaml_schema_value_t release = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneRelease, release_fields)};
+
+static const cyaml_schema_field_t change_fields[] = {
+    CYAML_FIELD_FLOAT("at", REQUIRED, ck_SceneChange, at),
+    CYAML_FIELD_STRING_PTR("set", REQUIRED | CYAML_FLAG_POINTER, ck_SceneChange, set, 1, CYAML_UNLIMITED),
+    CYAML_FIELD_END,
+};
+static const cyaml_schema_value_t change = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, ck_SceneChange, change_fields)};
 
 static const cyaml_schema_field_t move_fields[] = {
     CYAML_FIELD_SEQUENCE("pins", REQUIRED | CYAML_FLAG_POINTER, ck_SceneMove, pins, &text, 1, CYAML_UNLIMITED),
@@ -291,6 +319,8 @@ static const cyaml_schema_field_t time_fields[] = {
     CYAML_FIELD_FLOAT("duration", REQUIRED, ck_SceneTime, duration),
     CYAML_FIELD_FLOAT("step", OPTIONAL, ck_SceneTime, step),
     CYAML_FIELD_FLOAT("fps", OPTIONAL, ck_SceneTime, fps),
+    CYAML_FIELD_FLOAT("jitter", OPTIONAL, ck_SceneTime, jitter),
+    CYAML_FIELD_UINT("seed", OPTIONAL, ck_SceneTime, seed),
     CYAML_FIELD_END,
 };
 
@@ -327,8 +357,10 @@ static const cyaml_schema_field_t scene_fields[] = {
     CYAML_FIELD_SEQUENCE_FIXED("velocity", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, velocity, &number, 3),
     CYAML_FIELD_FLOAT("drag", OPTIONAL, ck_SceneFile, drag),
     CYAML_FIELD_SEQUENCE("colliders", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, colliders, &collider, 0, 1000),
+    CYAML_FIELD_SEQUENCE("bodies", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, bodies, &body, 0, 100),
     CYAML_FIELD_SEQUENCE("moves", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, moves, &move, 0, 1000),
     CYAML_FIELD_SEQUENCE("release", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, release, &release, 0, 1000),
+    CYAML_FIELD_SEQUENCE("changes", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, changes, &change, 0, 100000),
     CYAML_FIELD_MAPPING("time", REQUIRED, ck_SceneFile, time, time_fields),
     CYAML_FIELD_STRING_PTR("truth", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, truth, 1, 100),
     CYAML_FIELD_SEQUENCE("measure", OPTIONAL | CYAML_FLAG_POINTER, ck_SceneFile, measure, &text, 0, 100),

@@ -7,6 +7,7 @@
 #include "runge_kutta.h"
 #include "springs.h"
 #include "time_scale.h"
+#include "vector.h"
 #include "wind.h"
 
 #include <string.h>
@@ -32,6 +33,9 @@ ck_Status ck_truth_trajectory_check(const ck_Model *model, ck_Error *error) {
     const bool is_rigid = model->terms & CK_TERM_RIGID;
     ck_Status status = ck_truth_need(!is_rigid || ck_springs_start_at_rest(model), model, error,
                                      "bars that start at their lengths: how others snap to them is not known");
+    for (int i = 0; i < model->rigid_count && !status; i++)
+        status = ck_truth_need(!(ck_length(model->rigid[i].spin) > 0), model, error,
+                               "rigid bodies that do not spin: its integrator turns nothing");
     return status ? status
                   : ck_truth_need(!is_rigid || !model->collider_count, model, error,
                                   "springs, or no colliders: its integrator has no rigid bars in contact");
@@ -82,7 +86,8 @@ typedef struct Starts {
 static ck_Status solve_start(void *context, int index, ck_Error *error) {
     Starts *starts = context;
     const ck_Model *model = starts->model;
-    // the longest first
+    // the longest first; the reference knows no rigid bodies
+    if (index == 0 && model->rigid_count) return CK_OK;
     if (index == 0) return integrate_release(&starts->release, model, error);
     int seed = index - 1;
     starts->status[seed] = ck_equilibrium_release(&starts->found[seed], model, seed ? NUDGE * model->spacing : 0,
@@ -120,9 +125,20 @@ static ck_Status draw_path(void *context, int index, ck_Error *error) {
                                   CK_REFERENCE_NUDGE * ensemble->model->size, (uint64_t)index + 1, error);
 }
 
+// To the integrator a rigid body is its centre: so it is right for as long as it touches nothing.
+static ck_Status check_untouched(const ck_Model *model, const ck_Trajectory *path, ck_Error *error) {
+    for (int frame = 0; frame < path->frame_count && model->rigid_count; frame++)
+        if (ck_metric_rigid_gap(model, path, frame) < 0)
+            return ck_fail(error, CK_REFUSED,
+                           "%s: a rigid body touches something by %g s, which the reference integrator does not know",
+                           model->name, frame * model->step);
+    return CK_OK;
+}
+
 ck_Status ck_truth_solve_trajectory(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
     ck_ReferencePath path;
     ck_Status status = ck_reference_path_create(&path, model, error);
+    if (!status) status = check_untouched(model, &path.fine, error);
     if (status) {
         ck_reference_path_free(&path);
         return status;
