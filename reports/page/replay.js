@@ -58,7 +58,7 @@ class Replay {
 		this.data = parseReplay(bytes);
 		this.range = range;
 		this.world = new THREE.Scene();
-		this.colliders = makeColliders(this.data);
+		this.colliders = makeColliders(this.data, boundsOf(this.data, [...this.data.paths.keys()].slice(-1)).getSize(new THREE.Vector3()).length());
 		this.world.add(this.colliders);
 		this.bodies = new Map([...this.data.paths.keys()].map((name) => [name, makeBody(this.data, name === "truth")]));
 		for (const body of this.bodies.values()) this.world.add(body.group);

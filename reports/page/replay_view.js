@@ -138,9 +138,9 @@ function solidGeometry(collider) {
 	return new THREE.LatheGeometry(outline, 24).rotateZ(Math.PI / 2);
 }
 
-function makeColliders(replay) {
+//   size  m, of what is to be seen: half the side of a plane
+function makeColliders(replay, size) {
 	const group = new THREE.Group();
-	const size = boundsOf(replay, [...replay.paths.keys()].slice(-1)).getSize(new THREE.Vector3()).length();
 	const place = (object, collider) => {
 		object.position.set(...collider.slice(0, 3));
 		object.userData = { at: collider.slice(0, 3), moves: collider.moves };

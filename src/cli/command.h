@@ -32,7 +32,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_FORMAT = 16384,
     CK_TAKES_SPRING = 32768,
     CK_TAKES_STUDY = 65536,
-    CK_TAKES_PART = 131072 // --shard, of scenes
+    CK_TAKES_PART = 131072, // --shard, of scenes
+    CK_TAKES_VIEW = 262144
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -52,7 +53,7 @@ extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_com
     ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_refine,
     ck_command_merge, ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score,
     ck_command_export, ck_command_conform, ck_command_diff, ck_command_new_engine, ck_command_means,
-    ck_command_findings, ck_command_study;
+    ck_command_findings, ck_command_study, ck_command_view;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -91,6 +92,9 @@ typedef struct ck_Arguments {
     int word_count;
     char *validate[16]; // paths, owned
     int validate_count;
+    int port;     // of view; 0: any that is free
+    double speed; // times real time; 0: as fast as it can
+    bool opens_nothing, begins_paused;
     bool is_update;
     const char *baseline; // of check
     const char *history;  // directory; NULL: none

@@ -80,7 +80,9 @@ typedef struct ck_Path {
     double frequency;    // 1/s
     double (*points)[4]; // [point_count] s and m
     int point_count;
-    double slack; // s: what a time may be off, by rounding
+    double slack;   // s: what a time may be off, by rounding
+    double goal[3]; // m, of a pin's own path: where it is at its end
+    bool has_goal;
 } ck_Path;
 
 // A pin that is moved.
@@ -184,6 +186,10 @@ typedef struct ck_Model {
 // Compiles a scene.
 // Errors: CK_BAD_INPUT at the scene's file:line:column, CK_NO_MEMORY. Free with ck_model_free in any case.
 ck_Status ck_model_build(ck_Model *model, const struct ck_Scene *scene, ck_Error *error);
+
+// As ck_model_build, of a scene whose particles are elsewhere by then: whether they start inside of anything is not
+// asked, and its changes are left alone.
+ck_Status ck_model_build_part(ck_Model *model, const struct ck_Scene *scene, ck_Error *error);
 
 // Accepts a zeroed model.
 void ck_model_free(ck_Model *model);

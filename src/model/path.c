@@ -63,6 +63,13 @@ void ck_path_at(const ck_Path *path, double time, int side, double *moved, doubl
     memset(acceleration, 0, 3 * sizeof(double));
 }
 
+void ck_path_aim(ck_Path *path, const double *place) {
+    const double from = fmax(0, path->from), length = path->to - from;
+    for (int axis = 0; axis < 3; axis++)
+        path->vector[axis] = length > path->slack ? (path->goal[axis] - place[axis]) / length : 0;
+    path->from = from;
+}
+
 double ck_path_next_jump(const ck_Path *path, double time) {
     const double after = time + path->slack;
     if (after < path->from) return path->from;

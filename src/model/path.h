@@ -21,6 +21,10 @@ double ck_path_next_jump(const ck_Path *path, double time);
 // next leaves out (2π/20)²/8 = 1.2 % of its amplitude, and as much of points. INFINITY: nothing turns.
 double ck_path_longest_step(const ck_Model *model);
 
+// Gives a path with a goal the velocity that takes it there from a place where it is at 0 or, where it begins later,
+// then.
+void ck_path_aim(ck_Path *path, const double *place);
+
 // True where the velocity of any pin that moves jumps at that time.
 bool ck_driven_jump(const ck_Model *model, double time);
 

@@ -1,6 +1,7 @@
 #include "segment.h"
 
 #include "body.h"
+#include "change.h"
 #include "path.h"
 #include "scene.h"
 #include "vector.h"
@@ -41,22 +42,23 @@ const ck_Segment *ck_model_segment_at(const ck_Model *model, int frame) {
 
 static ck_Status add_segment(ck_Model *model, const ck_Scene *scene, uint32_t index, char **words, ck_Error *error) {
     const ck_SceneChange *change = &scene->file->changes[index];
-    char place[32], *longer;
+    char place[32];
     snprintf(place, sizeof place, "changes[%u]", index);
     const double frames = change->at / model->step;
     ck_Error why = {0};
-    if (!(fabs(frames - round(frames)) < 1e-6 * fmax(1, frames)) || !(frames >= 1) || frames >= model->frame_count)
-        return ck_scene_fail(
-            scene, place, error,
-            "at is %g s; it must be a whole number of frames of %g s, after the first and before the end", change->at,
-            model->step);
+    if (!(fabs(frames - round(frames)) < 1e-6 * fmax(1, frames)) || frames >= model->frame_count)
+        return ck_scene_fail(scene, place, error,
+                             "at is %g s; it must be a whole number of frames of %g s, before the end", change->at,
+                             model->step);
     if (model->segment_count && (int)round(frames) <= model->segments[model->segment_count - 1].frame)
         return ck_scene_fail(scene, place, error, "at is %g s, no later than the change before", change->at);
-    if (asprintf(&longer, "%s%s%s", *words, *change->set == '@' ? "" : "@", change->set) < 0) return CK_NO_MEMORY;
-    free(*words);
-    *words = longer;
+    char *more = NULL;
+    if (asprintf(&more, "%s%s", *change->set == '@' ? "" : "@", change->set) < 0) return CK_NO_MEMORY;
+    const bool is_merged = ck_change_merge(words, more);
+    free(more);
+    if (!is_merged) return CK_NO_MEMORY;
     ck_Segment *segment = &model->segments[model->segment_count++];
-    ck_Status status = ck_segment_build(segment, model, scene->document.path, longer, (int)round(frames), &why);
+    ck_Status status = ck_segment_build(segment, model, scene->document.path, *words, (int)round(frames), &why);
     if (status == CK_BAD_INPUT) return ck_scene_fail(scene, place, error, "%s", why.message);
     return status;
 }
@@ -105,6 +107,8 @@ static bool shift_paths(ck_Model *resumed, const ck_Model *from, double time) {
         double moved[3], velocity[3], gain[3];
         driven->path = resumed->paths + (from->driven[i].path - from->paths);
         driven->until -= time;
+        if (driven->path->has_goal)
+            ck_path_aim(resumed->paths + (driven->path - resumed->paths), resumed->position + 3 * driven->particle);
         // from where it is, as far as it would have come
         ck_path_at(driven->path, 0, 1, moved, velocity, gain);
         memcpy(driven->start, resumed->position + 3 * driven->particle, sizeof driven->start);

@@ -3,6 +3,7 @@
 #include "chart.h"
 #include "files.h"
 #include "page.h"
+#include "template.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -67,12 +68,9 @@ static ck_Status replace(const Places *places, ck_Error *error) {
 }
 
 ck_Status ck_report_write(const char *directory, ck_Error *error) {
-    // gnuplot is run in another directory
-    char data_directory[PATH_MAX], named[PATH_MAX + 10], sources[PATH_MAX];
-    bool has_data = ck_path_data(data_directory, sizeof data_directory);
-    snprintf(named, sizeof named, "%s/reports", data_directory);
-    if (!has_data || !realpath(named, sources))
-        return ck_fail(error, CK_IO, "%s: %s; it must hold the scripts of charts and page", named, strerror(errno));
+    char sources[PATH_MAX];
+    ck_Status found = ck_template_sources(sources, sizeof sources, error);
+    if (found) return found;
     ck_ReportData data;
     Places places;
     bool is_found = find_places(&places, directory), *drawn = NULL;

@@ -36,6 +36,33 @@ bool ck_change_next(const char *word, int *place, ck_Change *change) {
     return true;
 }
 
+static bool has_key(const char *words, const ck_Change *of) {
+    ck_Change change;
+    for (int place = 0; ck_change_next(words, &place, &change);)
+        if (change.key_length == of->key_length && !strncmp(change.key, of->key, (size_t)of->key_length)) return true;
+    return false;
+}
+
+bool ck_change_merge(char **words, const char *more) {
+    char *text = NULL;
+    size_t size;
+    ck_Change change;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return false;
+    for (int place = 0; ck_change_next(*words, &place, &change);)
+        if (!has_key(more, &change))
+            fprintf(out, "@%.*s=%.*s", change.key_length, change.key, change.value_length, change.value);
+    for (int place = 0; ck_change_next(more, &place, &change);)
+        fprintf(out, "@%.*s=%.*s", change.key_length, change.key, change.value_length, change.value);
+    if (fclose(out)) {
+        free(text);
+        return false;
+    }
+    free(*words);
+    *words = text;
+    return true;
+}
+
 // The byte of a text at a mark, which counts characters from after the mark of byte order.
 static size_t byte_at(const ck_Document *document, yaml_mark_t mark) {
     const unsigned char *text = document->text;

@@ -21,6 +21,10 @@ int ck_change_file_length(const char *word);
 // The change after the letter at *place, which is 0 for the first; false beyond the last.
 bool ck_change_next(const char *word, int *place, ck_Change *change);
 
+// Adds the changes of other words behind *words, in place of those of the same keys. False when out of memory; then
+// *words is as it was.
+bool ck_change_merge(char **words, const char *more);
+
 // Puts a value in place of that of a key, or beside what a mapping has already, into the document's text, whose lines
 // stay as they are but for the value. The tree is that of before: parse the text again.
 // Errors: CK_BAD_INPUT where there is no such place, CK_NO_MEMORY.

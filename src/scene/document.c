@@ -89,6 +89,12 @@ static ck_Status parse(ck_Document *document, ck_Error *error) {
     return status;
 }
 
+ck_Status ck_document_parse(ck_Document *document, ck_Error *error) {
+    if (document->has_yaml) yaml_document_delete(&document->yaml);
+    document->has_yaml = false;
+    return parse(document, error);
+}
+
 ck_Status ck_document_load(ck_Document *document, const char *path, const ck_DocumentKind *kind, ck_Error *error) {
     ck_Change change;
     *document =
@@ -98,9 +104,7 @@ ck_Status ck_document_load(ck_Document *document, const char *path, const ck_Doc
     if (!status) status = parse(document, error);
     for (int place = 0; !status && ck_change_next(path, &place, &change);) {
         status = ck_change_apply(document, &change, error);
-        yaml_document_delete(&document->yaml);
-        document->has_yaml = false;
-        if (!status) status = parse(document, error);
+        if (!status) status = ck_document_parse(document, error);
     }
     return status;
 }

@@ -30,6 +30,8 @@ typedef struct ck_Document {
 // empty, or is larger than CK_DOCUMENT_MAX_BYTES. Errors: CK_BAD_INPUT with file:line:column, CK_NO_MEMORY, CK_IO. Free
 // with ck_document_free in any case.
 ck_Status ck_document_load(ck_Document *document, const char *path, const ck_DocumentKind *kind, ck_Error *error);
+// Parses the text again, once it has been changed. Errors: as those of ck_document_load.
+ck_Status ck_document_parse(ck_Document *document, ck_Error *error);
 void ck_document_free(ck_Document *document);
 
 // The node at a dotted path, or NULL.

@@ -134,10 +134,11 @@ typedef struct ck_SceneBox {
     double restitution, friction;
 } ck_SceneBox;
 
-// How something moves from where it starts: in one of four ways.
+// How something moves from where it starts: in one of five ways.
 typedef struct ck_ScenePath {
-    double from, to;     // s, of the first two ways: it stays before and after; to 0: to the end
+    double from, to;     // s, but of points and files: it stays before and after; to 0: to the end
     double *velocity;    // [3] m/s
+    double *towards;     // [3] m, where it is at to, from wherever it is at from, at an even speed
     double *amplitude;   // [3] m, of a sine
     double frequency;    // 1/s, of that
     double (*points)[4]; // s, and m: joined by a smooth curve; only how it moves from the first counts

@@ -42,10 +42,6 @@ ck_Status ck_model_set_colliders(ck_Model *model, const ck_Scene *scene, ck_Erro
 // would touch what is not modelled, or starts inside of something; CK_NO_MEMORY.
 ck_Status ck_model_add_rigid(ck_Model *model, const ck_Scene *scene, bool is_part, ck_Error *error);
 
-// As ck_model_build, of a scene whose particles are elsewhere by then: whether they start inside of anything is not
-// asked, and its changes are left alone.
-ck_Status ck_model_build_part(ck_Model *model, const ck_Scene *scene, ck_Error *error);
-
 // A sphere's or a box's shape of the keys at a place of the scene. Errors: CK_BAD_INPUT.
 ck_Status ck_model_set_sphere(ck_Collider *collider, const ck_SceneSphere *from);
 ck_Status ck_model_set_box(ck_Collider *collider, const ck_SceneBox *from, const ck_Scene *scene, const char *at,

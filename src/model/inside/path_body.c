@@ -63,21 +63,28 @@ static ck_Status set_path(ck_Model *model, const ck_ScenePath *from, const ck_Sc
     ck_Path *path = &model->paths[model->path_count++];
     const bool has_points = from->points_count || from->file;
     *path = (ck_Path){.from = from->from, .to = from->to > 0 ? from->to : INFINITY, .slack = 1e-9 * model->step};
-    const int ways = !!from->velocity + !!from->amplitude + !!from->points_count + !!from->file;
+    const int ways = !!from->velocity + !!from->towards + !!from->amplitude + !!from->points_count + !!from->file;
     if (ways != 1)
-        return ck_scene_fail(scene, at, error, "a path has one of velocity, amplitude, points and file; this has %s",
+        return ck_scene_fail(scene, at, error,
+                             "a path has one of velocity, towards, amplitude, points and file; this has %s",
                              ways ? "more" : "none");
     if ((from->frequency > 0) != (from->amplitude != NULL))
         return ck_scene_fail(scene, at, error,
                              "amplitude and frequency go together: it moves by amplitude*sin(2*pi*f*t)");
     if (has_points && (from->from > 0 || from->to > 0))
         return ck_scene_fail(scene, at, error, "points have times of their own; leave from and to out");
+    if (from->towards && (!(from->to > 0) || !strncmp(at, "colliders", 9)))
+        return ck_scene_fail(scene, at, error, "towards is for pins, and needs to: the time when they are there");
     ck_Status status = has_points ? set_points(path, from, scene, at, error) : CK_OK;
     path->frequency = from->frequency;
     if (!status) status = check_times(model, path, scene, at, error);
     if (status || has_points) return status;
-    path->kind = from->velocity ? CK_PATH_VELOCITY : CK_PATH_SINE;
-    memcpy(path->vector, from->velocity ? from->velocity : from->amplitude, sizeof path->vector);
+    path->kind = from->amplitude ? CK_PATH_SINE : CK_PATH_VELOCITY;
+    path->has_goal = from->towards != NULL;
+    if (path->has_goal)
+        memcpy(path->goal, from->towards, sizeof path->goal);
+    else
+        memcpy(path->vector, from->velocity ? from->velocity : from->amplitude, sizeof path->vector);
     return CK_OK;
 }
 
@@ -106,19 +113,26 @@ static void free_pins(Pins *pins) {
     free(pins->until);
 }
 
-static ck_Status add_driven(ck_Model *model, Pins *pins, int particle, const char *pin, const ck_Scene *scene,
+//   move  the number of the path
+static ck_Status add_driven(ck_Model *model, Pins *pins, int move, int particle, const char *pin, const ck_Scene *scene,
                             const char *place, ck_Error *error) {
     if (!model->pinned[particle])
         return ck_scene_fail(scene, place, error, "%s is not pinned, so that it cannot be moved; add it to pins", pin);
     if (pins->moves[particle]) return ck_scene_fail(scene, place, error, "%s already moves; name it once", pin);
     pins->moves[particle] = true;
-    const double until = pins->until[particle], from = model->paths[model->path_count - 1].from;
+    const double until = pins->until[particle], from = model->paths[move].from;
     if (from >= until)
         return ck_scene_fail(scene, place, error, "%s is let go at %g s, before its path begins at %g s", pin, until,
                              from);
     ck_Driven *driven = &model->driven[model->driven_count++];
-    *driven = (ck_Driven){.particle = particle, .path = &model->paths[model->path_count - 1], .until = until};
+    *driven = (ck_Driven){.particle = particle, .path = &model->paths[move], .until = until};
     memcpy(driven->start, model->position + 3 * particle, sizeof driven->start);
+    if (!model->paths[move].has_goal) return CK_OK;
+    // each has a way of its own
+    ck_Path *own = &model->paths[model->path_count++];
+    *own = model->paths[move];
+    ck_path_aim(own, driven->start);
+    driven->path = own;
     return CK_OK;
 }
 
@@ -126,13 +140,14 @@ static ck_Status set_move(ck_Model *model, const ck_Scene *scene, uint32_t index
     const ck_SceneMove *from = &scene->file->moves[index];
     char place[64];
     snprintf(place, sizeof place, "moves[%u].path", index);
+    const int move = model->path_count;
     ck_Status status = set_path(model, &from->path, scene, place, error);
     for (uint32_t i = 0; i < from->pins_count && !status; i++) {
         int count = 0;
         snprintf(place, sizeof place, "moves[%u].pins[%u]", index, i);
         status = ck_model_resolve_pin(pins->chosen, &count, model, scene, from->pins[i], place, error);
         for (int j = 0; j < count && !status; j++)
-            status = add_driven(model, pins, pins->chosen[j], from->pins[i], scene, place, error);
+            status = add_driven(model, pins, move, pins->chosen[j], from->pins[i], scene, place, error);
     }
     return status;
 }
@@ -142,7 +157,8 @@ ck_Status ck_model_set_paths(ck_Model *model, const ck_Scene *scene, ck_Error *e
     Pins pins;
     ck_Status status = create_pins(&pins, model);
     // driven pins point to paths, which therefore never move
-    model->paths = calloc((size_t)file->moves_count + file->colliders_count + 1, sizeof *model->paths);
+    model->paths =
+        calloc((size_t)file->moves_count + file->colliders_count + (size_t)model->pin_count + 1, sizeof *model->paths);
     model->driven = calloc((size_t)model->pin_count + 1, sizeof *model->driven);
     if (!model->paths || !model->driven) status = CK_NO_MEMORY;
     for (uint32_t i = 0; i < file->moves_count && !status; i++) status = set_move(model, scene, i, &pins, error);

@@ -6,6 +6,7 @@
 #include "finding.h"
 #include "process.h"
 #include "replay_pack.h"
+#include "template.h"
 
 #include <errno.h>
 #include <nettle/base64.h>
@@ -18,7 +19,7 @@
 
 typedef struct Page {
     const ck_ReportData *data;
-    const char *sources, *charts;
+    const char *charts;
     const bool *drawn;
     ck_Findings findings;
     FILE *file;
@@ -223,21 +224,6 @@ static ck_Status write_report(const Page *page, ck_Error *error) {
     return status;
 }
 
-static ck_Status include(const Page *page, const char *name, ck_Error *error) {
-    static const char three[] = "three/";
-    bool is_three = !strncmp(name, three, strlen(three));
-    char *path, *bytes;
-    size_t size;
-    if (asprintf(&path, "%s%s%s", is_three ? CK_THREE_DIRECTORY : page->sources, is_three ? "/" : "/page/",
-                 is_three ? name + strlen(three) : name) < 0)
-        return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    ck_Status status = ck_file_read(&bytes, &size, path, error);
-    if (!status) fwrite(bytes, 1, size, page->file);
-    free(bytes);
-    free(path);
-    return status;
-}
-
 // The same for the same results, and what no text among them can know of itself.
 static void choose_nonce(Page *page) {
     struct sha256_ctx hash;
@@ -253,40 +239,17 @@ static void choose_nonce(Page *page) {
     for (size_t i = 0; i < sizeof digest; i++) snprintf(page->nonce + 2 * i, 3, "%02x", digest[i]);
 }
 
-// A line of the template, with the nonce where it has its place.
-static void write_line(const Page *page, const char *line) {
-    static const char word[] = "@nonce";
-    for (const char *place; (place = strstr(line, word)); line = place + strlen(word))
-        fprintf(page->file, "%.*s%s", (int)(place - line), line, page->nonce);
-    fprintf(page->file, "%s\n", line);
-}
-
-static ck_Status fill_template(const Page *page, char *template, ck_Error *error) {
-    static const char include_word[] = "@include ";
-    ck_Status status = CK_OK;
-    char *rest = template;
-    for (char *line; !status && (line = strsep(&rest, "\n"));) {
-        if (!strncmp(line, include_word, strlen(include_word)))
-            status = include(page, line + strlen(include_word), error);
-        else if (!strcmp(line, "@report"))
-            status = write_report(page, error);
-        else
-            write_line(page, line);
-    }
-    return status;
+static ck_Status write_part(void *context, const char *word, ck_Error *error) {
+    return strcmp(word, "report") ? CK_OK : write_report(context, error);
 }
 
 ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const char *charts, const bool *drawn,
                         const char *path, ck_Error *error) {
-    Page page = {.data = data, .sources = sources, .charts = charts, .drawn = drawn};
-    char *source = ck_path_join(sources, "page/page.html"), *template = NULL;
-    size_t size;
-    ck_Status status = source ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!status) status = ck_file_read(&template, &size, source, error);
-    if (!status) status = find_results(&page, error);
+    Page page = {.data = data, .charts = charts, .drawn = drawn};
+    ck_Status status = find_results(&page, error);
     if (!status) choose_nonce(&page);
     if (!status && !(page.file = fopen(path, "w"))) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
-    if (!status) status = fill_template(&page, template, error);
+    if (!status) status = ck_template_write(page.file, sources, "page.html", page.nonce, write_part, &page, error);
     if (page.file) {
         bool failed = fflush(page.file) || ferror(page.file);
         failed |= fclose(page.file) != 0;
@@ -294,7 +257,5 @@ ck_Status ck_page_write(const ck_ReportData *data, const char *sources, const ch
         if (status) unlink(path);
     }
     ck_findings_free(&page.findings);
-    free(template);
-    free(source);
     return status;
 }

@@ -1,0 +1,492 @@
+#include "view.h"
+
+#include "orders.h"
+#include "template.h"
+
+#include "springs.h"
+#include "vector.h"
+
+#include <civetweb.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <limits.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define VIEWERS 32
+#define ORDERS 256      // that wait to be done
+#define MOST_ORDER 2000 // letters
+#define UNANSWERED 2    // frames that a viewer may be behind
+
+typedef struct Viewer {
+    struct mg_connection *connection; // NULL: none
+    bool is_ready;                    // for frames
+    int unanswered;
+    long seen; // the last frame that was sent; −1: none
+} Viewer;
+
+typedef struct Order {
+    char text[MOST_ORDER];
+    size_t length;
+} Order;
+
+typedef struct View {
+    ck_Stage stage;
+    struct mg_context *server;
+    char token[33], nonce[33], host[40], other_host[40], origin[60], other_origin[60];
+    char *page, *intro; // the page, and what a viewer is told first
+    size_t page_size;
+    pthread_mutex_t lock; // of what follows
+    pthread_cond_t woken;
+    Viewer viewers[VIEWERS];
+    Order *orders; // [ORDERS], a ring
+    int first_order, order_count;
+    bool is_asked; // a viewer waits for the frame that is shown
+} View;
+
+static bool draw_token(char *token) {
+    unsigned char bytes[16];
+    const int file = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
+    const bool has = file >= 0 && read(file, bytes, sizeof bytes) == (ssize_t)sizeof bytes;
+    if (file >= 0) close(file);
+    for (size_t i = 0; i < sizeof bytes && has; i++) snprintf(token + 2 * i, 3, "%02x", bytes[i]);
+    return has;
+}
+
+// Equal in a time that does not tell where they differ.
+static bool is_token(const View *view, const char *query) {
+    const char *given = query ? strstr(query, "t=") : NULL;
+    unsigned char differs = 0;
+    if (!given || strlen(given + 2) != strlen(view->token)) return false;
+    for (size_t i = 0; view->token[i]; i++) differs |= (unsigned char)(given[2 + i] ^ view->token[i]);
+    return !differs;
+}
+
+// The page of another site cannot name this host with its own name, nor hide where it is from.
+static bool is_ours(const View *view, const struct mg_connection *connection, bool needs_origin) {
+    const struct mg_request_info *request = mg_get_request_info(connection);
+    const char *host = mg_get_header(connection, "Host"), *origin = mg_get_header(connection, "Origin");
+    if (!host || (strcmp(host, view->host) && strcmp(host, view->other_host))) return false;
+    if (origin && strcmp(origin, view->origin) && strcmp(origin, view->other_origin)) return false;
+    return (origin || !needs_origin) && is_token(view, request->query_string);
+}
+
+static int refuse(struct mg_connection *connection, int code, const char *words) {
+    mg_printf(connection,
+              "HTTP/1.1 %d %s\r\nContent-Type: text/plain\r\nContent-Length: %zu\r\nConnection: close\r\n\r\n%s", code,
+              words, strlen(words), words);
+    return code;
+}
+
+static int serve_page(struct mg_connection *connection, void *context) {
+    const View *view = context;
+    const struct mg_request_info *request = mg_get_request_info(connection);
+    if (strcmp(request->request_method, "GET")) return refuse(connection, 405, "Only GET");
+    if (strcmp(request->local_uri, "/")) return refuse(connection, 404, "There is one page");
+    if (!is_ours(view, connection, false)) return refuse(connection, 403, "The address that was printed has a token");
+    mg_printf(
+        connection,
+        "HTTP/1.1 200 OK\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: %zu\r\nCache-Control: "
+        "no-store\r\nReferrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+        view->page_size);
+    mg_write(connection, view->page, view->page_size);
+    return 200;
+}
+
+static int greet(const struct mg_connection *connection, void *context) {
+    View *view = context;
+    int taken = 0;
+    if (!is_ours(view, connection, true)) return 1;
+    pthread_mutex_lock(&view->lock);
+    for (int i = 0; i < VIEWERS; i++) taken += view->viewers[i].connection != NULL;
+    pthread_mutex_unlock(&view->lock);
+    return taken >= VIEWERS;
+}
+
+static void write_text(struct mg_connection *connection, const char *text) {
+    mg_lock_connection(connection);
+    mg_websocket_write(connection, MG_WEBSOCKET_OPCODE_TEXT, text, strlen(text));
+    mg_unlock_connection(connection);
+}
+
+static void welcome(struct mg_connection *connection, void *context) {
+    View *view = context;
+    pthread_mutex_lock(&view->lock);
+    int i = 0;
+    while (i < VIEWERS && view->viewers[i].connection) i++;
+    if (i < VIEWERS) view->viewers[i] = (Viewer){.connection = connection, .seen = -1};
+    pthread_mutex_unlock(&view->lock);
+    if (i < VIEWERS) write_text(connection, view->intro);
+}
+
+static Viewer *viewer_of(View *view, const struct mg_connection *connection) {
+    for (int i = 0; i < VIEWERS; i++)
+        if (view->viewers[i].connection == connection) return &view->viewers[i];
+    return NULL;
+}
+
+// "+" is a viewer's answer to a frame; all else is an order. 0 ends the connection.
+static int listen(struct mg_connection *connection, int bits, char *data, size_t length, void *context) {
+    View *view = context;
+    const int opcode = bits & 0xf;
+    if (opcode == MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE) return 0;
+    if (opcode != MG_WEBSOCKET_OPCODE_TEXT || !(bits & 0x80))
+        return opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG;
+    pthread_mutex_lock(&view->lock);
+    Viewer *viewer = viewer_of(view, connection);
+    const bool is_answer = length == 1 && *data == '+';
+    if (viewer && is_answer) {
+        viewer->unanswered = viewer->unanswered > 0 ? viewer->unanswered - 1 : 0;
+        viewer->is_ready = true;
+        view->is_asked = true;
+    }
+    const bool fits = is_answer || (length < MOST_ORDER && view->order_count < ORDERS);
+    if (!is_answer && fits) {
+        Order *order = &view->orders[(view->first_order + view->order_count++) % ORDERS];
+        memcpy(order->text, data, length);
+        order->length = length;
+    }
+    pthread_cond_signal(&view->woken);
+    pthread_mutex_unlock(&view->lock);
+    // who floods misses what is too much
+    return 1;
+}
+
+static void part(const struct mg_connection *connection, void *context) {
+    View *view = context;
+    pthread_mutex_lock(&view->lock);
+    Viewer *viewer = viewer_of(view, connection);
+    if (viewer) *viewer = (Viewer){0};
+    pthread_mutex_unlock(&view->lock);
+}
+
+// Bodies have the tips of two axes behind all particles, as in a replay.
+static size_t shown_count(const ck_Model *model) {
+    return (size_t)(model->particle_count + 2 * model->rigid_count);
+}
+
+static void put_positions(float *out, const ck_Model *model, const ck_Trajectory *shown) {
+    const double *at = ck_trajectory_position(shown, 0);
+    const ck_Turn *turn = ck_trajectory_turn(shown, 0);
+    for (int i = 0; i < 3 * model->particle_count; i++) *out++ = (float)at[i];
+    for (int i = 0; i < model->rigid_count; i++) {
+        const double *center = at + 3 * model->rigid[i].particle, none[4] = {1, 0, 0, 0};
+        const ck_Collider now =
+            ck_rigid_place(&model->rigid[i], center, isnan(turn[i].rotation[0]) ? none : turn[i].rotation);
+        for (int k = 0; k < 6; k++) *out++ = (float)(center[k % 3] + model->spacing * now.axes[k / 3][k % 3]);
+    }
+}
+
+#define HEAD 4
+#define OF_ENGINE 6
+
+static size_t frame_numbers(const View *view) {
+    const size_t engines = (size_t)ck_live_count(view->stage.live);
+    return HEAD + engines * (OF_ENGINE + 3 * shown_count(ck_live_model(view->stage.live)));
+}
+
+static void put_u32(float *out, uint32_t number) {
+    memcpy(out, &number, sizeof number);
+}
+
+static void fill_frame(const View *view, float *out) {
+    const ck_Live *live = view->stage.live;
+    const ck_Model *model = ck_live_model(live);
+    const int count = ck_live_count(live);
+    const ck_Metric *sag = ck_metric_find("sag");
+    put_u32(out, (uint32_t)ck_live_frame(live));
+    out[1] = (float)(ck_live_frame(live) * model->step);
+    put_u32(out + 2, view->stage.plays);
+    put_u32(out + 3, (uint32_t)count);
+    float *of = out + HEAD, *positions = of + (size_t)count * OF_ENGINE;
+    for (int i = 0; i < count; i++, of += OF_ENGINE, positions += 3 * shown_count(model)) {
+        const ck_LiveEngine *engine = ck_live_engine(live, i);
+        const double *at = ck_trajectory_position(&engine->shown, 0);
+        const double *first = ck_trajectory_position(&ck_live_engine(live, 0)->shown, 0);
+        double sum = 0;
+        for (int k = 0; k < 3 * model->particle_count; k++) sum += (at[k] - first[k]) * (at[k] - first[k]);
+        put_u32(of, engine->runs ? 0 : (uint32_t)engine->status + 1);
+        of[1] = (float)(1e3 * engine->cpu);
+        of[2] = (float)(1e3 * engine->wall);
+        of[3] = (float)sag->at(model, &engine->shown, 0, NULL);
+        of[4] = (float)ck_springs_largest_strain(model, at);
+        of[5] = (float)(sqrt(sum / model->particle_count) / model->size);
+        put_positions(positions, model, &engine->shown);
+    }
+}
+
+// Sends the frame to whoever has answered the last ones. Who leaves does so before or after, as part() waits for it.
+static void show_frame(View *view, float *frame, long number) {
+    bool is_filled = false;
+    pthread_mutex_lock(&view->lock);
+    for (int i = 0; i < VIEWERS; i++) {
+        Viewer *viewer = &view->viewers[i];
+        if (!viewer->connection || !viewer->is_ready || viewer->unanswered >= UNANSWERED || viewer->seen == number)
+            continue;
+        if (!is_filled) fill_frame(view, frame);
+        is_filled = true;
+        viewer->unanswered++;
+        viewer->seen = number;
+        mg_lock_connection(viewer->connection);
+        mg_websocket_write(viewer->connection, MG_WEBSOCKET_OPCODE_BINARY, (const char *)frame,
+                           frame_numbers(view) * sizeof *frame);
+        mg_unlock_connection(viewer->connection);
+    }
+    view->is_asked = false;
+    pthread_mutex_unlock(&view->lock);
+}
+
+static void tell_all(View *view, const char *text) {
+    pthread_mutex_lock(&view->lock);
+    for (int i = 0; i < VIEWERS; i++)
+        if (view->viewers[i].connection) write_text(view->viewers[i].connection, text);
+    pthread_mutex_unlock(&view->lock);
+}
+
+// Why engines have ended, once each.
+static void tell_ends(View *view, bool *told) {
+    for (int i = 0; i < ck_live_count(view->stage.live); i++) {
+        const ck_LiveEngine *engine = ck_live_engine(view->stage.live, i);
+        if (engine->runs) told[i] = false;
+        if (engine->runs || told[i]) continue;
+        json_t *end = json_pack("{s:s, s:i, s:s, s:s}", "kind", "ended", "engine", i, "status",
+                                ck_run_status_names[engine->status], "text", engine->reason);
+        char *text = end ? json_dumps(end, JSON_COMPACT) : NULL;
+        if (text) tell_all(view, text);
+        free(text);
+        json_decref(end);
+        told[i] = true;
+    }
+}
+
+// The next order, waiting for one or for the time, s; false where there is none.
+static bool next_order(View *view, double until, Order *order) {
+    pthread_mutex_lock(&view->lock);
+    const double left = until - ck_wall();
+    if (!view->order_count && !view->is_asked && left > 0) {
+        struct timespec end;
+        clock_gettime(CLOCK_REALTIME, &end);
+        const double at = (double)end.tv_sec + 1e-9 * (double)end.tv_nsec + fmin(left, 0.2);
+        end.tv_sec = (time_t)at;
+        end.tv_nsec = (long)(1e9 * (at - floor(at)));
+        pthread_cond_timedwait(&view->woken, &view->lock, &end);
+    }
+    const bool has = view->order_count > 0;
+    if (has) {
+        *order = view->orders[view->first_order];
+        view->first_order = (view->first_order + 1) % ORDERS;
+        view->order_count--;
+    }
+    pthread_mutex_unlock(&view->lock);
+    return has;
+}
+
+// Does what is asked until a time, s.
+static bool obey_until(View *view, double until) {
+    Order order;
+    char answer[1000];
+    bool any = false;
+    while (next_order(view, until, &order)) {
+        any = true;
+        ck_stage_obey(&view->stage, order.text, order.length, answer, sizeof answer);
+        if (*answer) tell_all(view, answer);
+    }
+    return any;
+}
+
+static void run(View *view, float *frame) {
+    ck_Stage *stage = &view->stage;
+    bool told[CK_LIVE_ENGINES] = {0};
+    double due = ck_wall();
+    for (long number = 0; !ck_child_interrupted;) {
+        number += obey_until(view, stage->plays || stage->steps ? due : ck_wall() + 0.2);
+        const double now = ck_wall();
+        const bool is_due = stage->steps || (stage->plays && now >= due);
+        if (is_due) {
+            ck_stage_step(stage);
+            if (stage->steps) stage->steps--;
+            const double step = ck_live_model(stage->live)->step;
+            // who cannot keep up is not chased
+            due = stage->real_time > 0 ? fmax(due + step / stage->real_time, now) : now;
+            number++;
+        } else if (!stage->plays) {
+            due = now;
+        }
+        tell_ends(view, told);
+        show_frame(view, frame, number);
+    }
+}
+
+static json_t *numbers(const double *from, int count) {
+    json_t *array = json_array();
+    for (int i = 0; i < count && array; i++) json_array_append_new(array, json_real(isfinite(from[i]) ? from[i] : 0));
+    return array;
+}
+
+// A collider as a replay has it: its place, and a plane's normal or a solid's radius, axes and half its core.
+static json_t *collider_of(const ck_Model *model, const ck_Collider *collider) {
+    double all[16];
+    memcpy(all, collider->point, sizeof collider->point);
+    if (collider->shape == CK_PLANE) {
+        memcpy(all + 3, collider->normal, sizeof collider->normal);
+        return json_pack("{s:s, s:o}", "shape", "plane", "numbers", numbers(all, 6));
+    }
+    all[3] = collider->radius;
+    memcpy(all + 4, collider->axes, sizeof collider->axes);
+    for (int k = 0; k < 3; k++) all[13 + k] = fmin(collider->half[k], model->size);
+    return json_pack("{s:s, s:o}", "shape", ck_shape_names[collider->shape], "numbers", numbers(all, 16));
+}
+
+static void add_body(json_t *intro, const ck_Model *model) {
+    json_t *springs = json_array(), *rests = json_array(), *triangles = json_array(), *colliders = json_array(),
+           *bodies = json_array();
+    for (int i = 0; i < model->spring_count; i++) {
+        const ck_Spring *spring = &model->springs[i];
+        if (spring->kind != CK_STRUCTURAL) continue;
+        json_array_append_new(springs, json_integer(spring->a));
+        json_array_append_new(springs, json_integer(spring->b));
+        json_array_append_new(rests, json_real(spring->rest));
+    }
+    for (int i = 0; i < 3 * model->triangle_count; i++)
+        json_array_append_new(triangles, json_integer(model->triangles[i / 3][i % 3]));
+    for (int i = 0; i < model->collider_count; i++)
+        json_array_append_new(colliders, collider_of(model, &model->colliders[i]));
+    for (int i = 0; i < model->rigid_count; i++) {
+        const ck_Collider *shape = &model->rigid[i].shape;
+        const double of[4] = {shape->radius, shape->half[0], shape->half[1], shape->half[2]};
+        json_array_append_new(bodies, numbers(of, 4));
+    }
+    json_object_set_new(intro, "springs", springs);
+    json_object_set_new(intro, "rests", rests);
+    json_object_set_new(intro, "triangles", triangles);
+    json_object_set_new(intro, "colliders", colliders);
+    json_object_set_new(intro, "bodies", bodies);
+}
+
+// What the scene is set to, for the page's fields.
+static void add_values(json_t *intro, const ck_Live *live) {
+    const ck_Model *model = ck_live_model(live);
+    const ck_Spring *spring = model->spring_count ? &model->springs[0] : NULL;
+    const bool is_rigid = spring && isinf(spring->stiffness);
+    json_object_set_new(intro, "gravity", numbers(model->gravity, 3));
+    json_object_set_new(intro, "force", numbers(model->force, 3));
+    json_object_set_new(intro, "drag", json_real(model->drag));
+    json_object_set_new(intro, "stiffness", spring && !is_rigid ? json_real(spring->stiffness) : json_null());
+    json_object_set_new(intro, "damping", spring && !is_rigid ? json_real(spring->damping) : json_null());
+    json_t *pins = json_array();
+    for (int i = 0; i < model->particle_count; i++)
+        if (model->pinned[i]) json_array_append_new(pins, json_integer(i));
+    json_object_set_new(intro, "pins", pins);
+}
+
+static json_t *engine_of(const ck_Engine *engine) {
+    json_t *settings = json_array();
+    for (const ck_Setting *row = engine->settings; row && row->name; row++)
+        json_array_append_new(settings,
+                              json_pack("{s:s, s:s, s:b, s:f, s:f, s:s}", "name", row->name, "help", row->help, "whole",
+                                        row->is_whole, "least", row->least, "most", row->most, "rule", row->rule));
+    return json_pack("{s:s, s:s, s:s, s:b, s:o}", "name", engine->name, "about", engine->about, "family",
+                     engine->family, "stock", engine->is_stock, "settings", settings);
+}
+
+static char *make_intro(const ck_Live *live) {
+    const ck_Model *model = ck_live_model(live);
+    const char *about = ck_live_scene(live)->file->about;
+    json_t *intro =
+        json_pack("{s:s, s:s, s:s, s:f, s:f, s:f, s:i, s:i, s:i}", "kind", "intro", "scene", model->name, "about",
+                  about ? about : "", "step", model->step, "size", model->size, "spacing", model->spacing, "columns",
+                  model->columns, "particles", (int)shown_count(model), "cloth", ck_model_cloth_count(model));
+    json_t *engines = json_array();
+    if (!intro || !engines) return NULL;
+    for (int i = 0; i < ck_live_count(live); i++)
+        json_array_append_new(engines, engine_of(ck_live_engine(live, i)->engine));
+    json_object_set_new(intro, "engines", engines);
+    add_body(intro, model);
+    add_values(intro, live);
+    char *text = json_dumps(intro, JSON_COMPACT);
+    json_decref(intro);
+    return text;
+}
+
+static ck_Status make_page(View *view, ck_Error *error) {
+    char sources[PATH_MAX];
+    ck_Status status = ck_template_sources(sources, sizeof sources, error);
+    FILE *file = status ? NULL : open_memstream(&view->page, &view->page_size);
+    if (!status && !file) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_template_write(file, sources, "view.html", view->nonce, NULL, NULL, error);
+    if (file && fclose(file) && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    return status;
+}
+
+static ck_Status start_server(View *view, int wanted, char *address, size_t size, ck_Error *error) {
+    char listening[40];
+    struct mg_callbacks callbacks = {0};
+    struct mg_server_port port[1];
+    snprintf(listening, sizeof listening, "127.0.0.1:%d", wanted);
+    const char *options[] = {"listening_ports",
+                             listening,
+                             "num_threads",
+                             "40",
+                             "websocket_timeout_ms",
+                             "3600000",
+                             "request_timeout_ms",
+                             "5000",
+                             "enable_directory_listing",
+                             "no",
+                             "tcp_nodelay",
+                             "1",
+                             NULL};
+    mg_init_library(0);
+    view->server = mg_start(&callbacks, view, options);
+    if (!view->server || mg_get_server_ports(view->server, 1, port) < 1)
+        return ck_fail(error, CK_IO, "port %d of this machine cannot be had: --port takes another, 0 any that is free",
+                       wanted);
+    snprintf(view->host, sizeof view->host, "127.0.0.1:%d", port[0].port);
+    snprintf(view->other_host, sizeof view->other_host, "localhost:%d", port[0].port);
+    snprintf(view->origin, sizeof view->origin, "http://%s", view->host);
+    snprintf(view->other_origin, sizeof view->other_origin, "http://%s", view->other_host);
+    snprintf(address, size, "http://%s/?t=%s", view->host, view->token);
+    mg_set_websocket_handler(view->server, "/live", greet, welcome, listen, part, view);
+    mg_set_request_handler(view->server, "/", serve_page, view);
+    return CK_OK;
+}
+
+ck_Status ck_view_run(ck_Live *live, const ck_ViewOptions *options, void (*ready)(void *context, const char *address),
+                      void *context, ck_Error *error) {
+    char address[120];
+    View *view = calloc(1, sizeof *view);
+    float *frame = NULL;
+    if (!view) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    pthread_mutex_init(&view->lock, NULL);
+    pthread_cond_init(&view->woken, NULL);
+    ck_Status status = ck_stage_begin(&view->stage, live);
+    view->stage.folder = options->folder;
+    view->stage.plays = !options->waits;
+    view->stage.real_time = options->real_time;
+    view->orders = calloc(ORDERS, sizeof *view->orders);
+    view->intro = make_intro(live);
+    if (!status) frame = calloc(frame_numbers(view), sizeof *frame);
+    if (status || !view->orders || !view->intro || !frame) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status && (!draw_token(view->token) || !draw_token(view->nonce)))
+        status = ck_fail(error, CK_IO, "no random numbers for a token");
+    if (!status) status = make_page(view, error);
+    if (!status) status = start_server(view, options->port, address, sizeof address, error);
+    if (!status) {
+        ready(context, address);
+        run(view, frame);
+    }
+    if (view->server) mg_stop(view->server);
+    ck_stage_end(&view->stage);
+    free(view->page);
+    free(view->intro);
+    free(view->orders);
+    free(frame);
+    free(view);
+    return status;
+}
