@@ -86,10 +86,16 @@ function answerText(scene, tolerance, { within, beyond }, facts) {
 		return [`No engine comes within ${percent(tolerance)} on ${scene}; nearest is ${beyond[0].engine}, ${percent(beyond[0].error)} off.`];
 	const [best, next] = within;
 	const text = [element("strong", { textContent: best.engine }), ` at ${settingsText(best)} a frame: an error of `,
-		`${percent(best.error)} in ${facts.metric} for ${readable(Number(best.cost.toPrecision(3)))} ms of CPU per simulated second.`];
+		`${inWords(best.error)} in ${facts.metric} for ${readable(Number(best.cost.toPrecision(3)))} ms of CPU per simulated second, ${readable(frameCost(best.cost))} ms of each 60 Hz frame.`];
 	if (facts.uncertainty > best.error) text.push(` (The truth is known to ${percent(facts.uncertainty)}.)`);
 	if (next) text.push(` Next is ${next.engine} at ${(next.cost / best.cost).toPrecision(2)} times that.`);
 	return text;
+}
+
+// An error as people say it, and as it was measured.
+function inWords(error) {
+	const words = error < 1e-6 ? "less than 0.0001 %" : `${(100 * error).toFixed(Math.max(0, 1 - Math.floor(Math.log10(100 * error))))} %`;
+	return `${words} (${readable(Number(error.toPrecision(2)))})`;
 }
 
 // The command that prints a program with these settings, where there is one.
@@ -100,39 +106,56 @@ function codeCommand(scene, way) {
 	return `clothcheck code ${scene} --engine ${way.engine} ${sets.join(" ")}`;
 }
 
+// The cost of one frame of a game at 60 Hz, in ms, of a cost in ms per simulated second.
+function frameCost(cost) {
+	return Number((cost / 60).toPrecision(3));
+}
+
 function answerRow(scene, way, best, isWithin) {
-	const yaml = `${way.engine}: {substeps: ${way.substeps}${way.iterations > 0 ? `, iterations: ${way.iterations}` : ""}}`;
+	const yaml = `settings: {${way.engine}: {substeps: ${way.substeps}${way.iterations > 0 ? `, iterations: ${way.iterations}` : ""}}}`;
 	return {
 		engine: way.engine, within: isWithin ? "yes" : "no", error: String(way.error), "ms CPU per s": String(way.cost),
-		"times the cheapest": best ? String(way.cost / best.cost) : "", settings: yaml, "measured in": way.source,
+		"ms a 60 Hz frame": String(frameCost(way.cost)), "times the cheapest": best ? String(way.cost / best.cost) : "", settings: yaml, "measured in": way.source,
 		command: codeCommand(scene, way),
 	};
 }
 
-// Engines that have no way at all, and why.
+// Engines that ran, or failed, and have no way at all, and why.
 function otherRows(facts, best) {
 	const shown = new Set([...best.within, ...best.beyond].map((way) => way.engine));
-	return facts.rows.filter((row) => !shown.has(row.engine)).map((row) => ({
+	return facts.rows.filter((row) => !shown.has(row.engine) && !isRefusal(row)).map((row) => ({
 		engine: row.engine, within: row.status !== "ok" ? row.status : row.error === "nan" ? "no truth" : "no better than still",
-		error: row.error === "nan" ? "" : row.error, "ms CPU per s": "", "times the cheapest": "", settings: "", "measured in": "runs.csv",
+		error: row.error === "nan" ? "" : row.error, "ms CPU per s": "", "ms a 60 Hz frame": "", "times the cheapest": "", settings: "", "measured in": "runs.csv",
 		command: "",
 	}));
 }
 
+// Engines that cannot run the scene, with their reasons, folded.
+async function showRefusals(scene, facts) {
+	const runs = await table("runs.csv");
+	const refused = new Set(facts.rows.filter(isRefusal).map((row) => row.engine));
+	const rows = (runs ? runs.rows : []).filter((row) => row.scene === scene && refused.has(row.engine));
+	foldRefusals(document.getElementById("answer-refusals"), rows, ["engine", "reason"],
+		`${rows.length} of the engines cannot run ${scene}`);
+}
+
+let answersAsked = 0;
+
 async function showAnswer() {
+	const asked = ++answersAsked;
 	const scene = document.getElementById("answer-scene").value;
 	const tolerance = Number(document.getElementById("answer-error").value);
 	const facts = await factsOf(scene);
-	// who keeps the table should not need to win it
-	const isRanked = (row) => !document.getElementById("answer-others").checked || !/^(native|seed)-/.test(row.engine);
-	facts.rows = facts.rows.filter(isRanked);
-	const best = bestWays((await waysToRun(scene, facts)).filter(isRanked), tolerance);
+	facts.rows = facts.rows.filter(isRowShown);
+	const best = bestWays((await waysToRun(scene, facts)).filter(isRowShown), tolerance);
+	if (asked !== answersAsked) return;
 	const rows = [...best.within.map((way) => answerRow(scene, way, best.within[0], true)),
 		...best.beyond.map((way) => answerRow(scene, way, best.within[0], false)), ...otherRows(facts, best)];
 	document.getElementById("answer-text").replaceChildren(...answerText(scene, tolerance, best, facts));
 	document.getElementById("answer-table").replaceChildren(csvTable(
-		["engine", "within", "error", "ms CPU per s", "times the cheapest", "settings", "measured in", "command"], rows,
+		["engine", "within", "error", "ms CPU per s", "ms a 60 Hz frame", "times the cheapest", "settings", "measured in", "command"], rows,
 		"Each engine's cheapest settings from which on finer steps stay within that error, of those that were measured; for the others, the nearest they came. The command prints a program with these settings"));
+	await showRefusals(scene, facts);
 }
 
 async function startAnswer() {
@@ -145,8 +168,11 @@ async function startAnswer() {
 	const select = document.getElementById("answer-scene");
 	const first = ["cloth_two_corners", ...studied].find((name) => names.includes(name));
 	fillSelect(select, names, first);
+	const error = document.getElementById("answer-error");
+	bindState("scene", select);
+	bindState("error", error);
 	document.getElementById("answer").hidden = false;
-	for (const input of [select, document.getElementById("answer-error"), document.getElementById("answer-others")])
+	for (const input of [select, error, document.getElementById("shown-engines")])
 		input.addEventListener("change", () => showAnswer().catch(showTrouble));
 	await showAnswer();
 }

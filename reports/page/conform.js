@@ -14,16 +14,21 @@ function conformCell(row) {
 	return made;
 }
 
-async function startConform() {
-	const cards = await table("conform.csv");
-	if (!cards) return;
-	const engines = [...new Set(cards.rows.map((row) => row.engine))];
+function showConform(cards) {
+	const engines = [...new Set(cards.rows.map((row) => row.engine))].filter(isShown);
 	const properties = [...new Set(cards.rows.map((row) => row.property))];
 	const heading = element("tr", {}, element("th", { scope: "col", textContent: "property" }),
 		...engines.map((engine) => element("th", { scope: "col" }, engineName(engine))));
 	const body = properties.map((property) => element("tr", {}, element("th", { scope: "row", textContent: property }),
 		...engines.map((engine) => conformCell(cards.rows.find((row) => row.engine === engine && row.property === property)))));
-	document.getElementById("conform-table").append(
+	document.getElementById("conform-table").replaceChildren(
 		element("table", {}, element("thead", {}, heading), element("tbody", {}, ...body)));
-	document.getElementById("conform").hidden = false;
+	document.getElementById("conform").hidden = !engines.length;
+}
+
+async function startConform() {
+	const cards = await table("conform.csv");
+	if (!cards) return;
+	document.getElementById("shown-engines").addEventListener("change", () => showConform(cards));
+	showConform(cards);
 }

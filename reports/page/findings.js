@@ -3,7 +3,7 @@
 async function startFindings() {
 	if (!report.findings.length) return;
 	const items = report.findings.map(({ kind, text, command }) => element("li", {},
-		element("b", { textContent: kind }), `: ${text} `, element("code", { textContent: command })));
+		element("b", { textContent: kind }), `: ${text} `, ...copyable(command)));
 	document.getElementById("findings-list").append(...items);
 	document.getElementById("findings").hidden = false;
 }

@@ -39,7 +39,7 @@ async function startDownloads() {
 
 async function startPage() {
 	const replay = new Replay();
-	const parts = [startMachine, startAnswer, startFindings, () => startSummary((scene) => showScene(scene, replay)), startFailures, startConform, startHistory,
+	const parts = [startMachine, startEngines, startAnswer, startFindings, startSummary, startFailures, startConform, startHistory,
 		startDownloads, () => startScene(replay), startGeneral];
 	for (const part of parts) await part().catch(showTrouble);
 	document.body.dataset.ready = "yes";
@@ -55,7 +55,9 @@ async function startScene(replay) {
 	const names = report.scenes.map((scene) => scene.name);
 	if (!names.length) return;
 	fillSelect(select, names, "cloth_two_corners");
-	select.addEventListener("change", () => showScene(select.value, replay).catch(showTrouble));
+	bindState("scene", select);
+	for (const input of [select, document.getElementById("shown-engines")])
+		input.addEventListener("change", () => showScene(select.value, replay).catch(showTrouble));
 	document.getElementById("scene").hidden = false;
 	await showScene(select.value, replay);
 }

@@ -16,6 +16,16 @@ async function strainRange(scene) {
 	return truth || values[Math.floor(values.length / 2)] || 0.01;
 }
 
+// What colours tell: each particle's values at a time, and the title of their scale.
+const colorings = {
+	strain: { title: () => "strain of a particle's most stretched spring", unit: "", isThere: (data) => data.rests.length > 0,
+		values: (replay, positions, path, time, out) => strainsAt(replay.data, positions, out) },
+	distance: { title: (data) => data.paths.has("truth") ? "distance to the truth" : "distance to the first engine", unit: " m", isThere: () => true,
+		values: (replay, positions, path, time, out) => distancesAt(replay.data, positions, basePath(replay.data, replay.shownEngines()), time, out) },
+	speed: { title: () => "speed", unit: " m/s", isThere: () => true,
+		values: (replay, positions, path, time, out) => speedsAt(replay.data, path, time, out) },
+};
+
 class Replay {
 	constructor() {
 		this.canvas = document.getElementById("replay-canvas");
@@ -23,12 +33,15 @@ class Replay {
 		this.renderer = null;
 		this.isPlaying = false;
 		this.isDirty = false;
-		for (const id of ["replay-layout", "replay-color", "replay-truth"])
+		for (const id of ["replay-layout", "replay-truth"])
 			document.getElementById(id).addEventListener("change", () => this.redraw());
+		document.getElementById("replay-color").addEventListener("change", () => this.recolor());
 		this.slider.addEventListener("input", () => this.redraw());
+		this.slider.addEventListener("change", () => keepState("t", this.slider.value));
 		document.getElementById("replay-play").addEventListener("click", () => this.play(!this.isPlaying));
 		this.canvas.addEventListener("keydown", (event) => this.turn(event));
 		window.addEventListener("resize", () => this.redraw());
+		window.addEventListener("beforeprint", () => this.print());
 	}
 
 	// Without a context there is no replay, and the rest of the page goes on.
@@ -51,41 +64,69 @@ class Replay {
 	async load(scene, isWanted) {
 		this.play(false);
 		const box = document.getElementById("replay");
+		document.getElementById("scene-about").textContent = "";
 		box.hidden = !report.scenes.some((one) => one.name === scene && one.has_replay) || !this.start();
 		if (box.hidden) return;
 		const [bytes, range] = await Promise.all([fileBytes(scene + ".replay"), strainRange(scene)]);
 		if (!isWanted()) return;
 		this.data = parseReplay(bytes);
-		this.range = range;
+		this.strainRange = range;
+		document.getElementById("scene-about").textContent = this.data.about || "";
 		this.world = new THREE.Scene();
 		this.colliders = makeColliders(this.data, boundsOf(this.data, [...this.data.paths.keys()].slice(-1)).getSize(new THREE.Vector3()).length());
 		this.world.add(this.colliders);
 		this.bodies = new Map([...this.data.paths.keys()].map((name) => [name, makeBody(this.data, name === "truth")]));
 		for (const body of this.bodies.values()) this.world.add(body.group);
-		this.strains = new Float32Array(this.data.particles);
-		this.slider.max = this.data.times[this.data.times.length - 1];
-		this.slider.value = 0;
-		this.showScale();
+		this.values = new Float32Array(this.data.particles);
 		this.listEngines();
+		this.slider.max = this.data.times[this.data.times.length - 1];
+		const asked = state.get("scene") === scene ? state.get("t") : null;
+		this.slider.value = asked ?? widestTime(this.data, this.shownEngines());
 		this.aim();
-		this.redraw();
+		this.recolor();
 	}
 
-	showScale() {
-		const scale = document.getElementById("replay-scale");
-		scale.hidden = !this.data.rests.length;
+	// The coloring that is chosen; null where the colour is the engine's own.
+	coloring() {
+		const chosen = colorings[document.getElementById("replay-color").value];
+		return chosen?.isThere(this.data) ? chosen : null;
+	}
+
+	// Colours reach to what the engine in the middle has at most; of strain, to the truth's.
+	rangeOf(coloring) {
+		if (coloring === colorings.strain) return this.strainRange;
+		const most = this.shownEngines().map((name) => {
+			const path = this.data.paths.get(name), positions = new Float32Array(3 * this.data.particles);
+			return Math.max(...[0.2, 0.4, 0.6, 0.8, 1].map((share) => {
+				positionsAt(this.data, path, share * this.slider.max, positions);
+				coloring.values(this, positions, path, share * this.slider.max, this.values);
+				return this.values.reduce((a, b) => Math.max(a, b || 0), 0);
+			}));
+		}).sort((a, b) => a - b);
+		return most[Math.floor(most.length / 2)] || 1e-9;
+	}
+
+	recolor() {
+		if (!this.data) return;
+		const coloring = this.coloring(), scale = document.getElementById("replay-scale");
+		scale.hidden = !coloring;
+		this.range = coloring ? this.rangeOf(coloring) : 1;
 		const ramp = element("span");
 		ramp.style.background = "linear-gradient(90deg, rgb(219,214,204), rgb(128,10,26))";
-		scale.replaceChildren("strain of a particle's most stretched spring: 0", ramp, percent(this.range) + " and more");
+		if (coloring) {
+			const most = coloring.unit ? readable(this.range) + coloring.unit : percent(this.range);
+			scale.replaceChildren(`${coloring.title(this.data)}: 0`, ramp, `${most} and more`);
+		}
+		this.redraw();
 	}
 
 	listEngines() {
 		const box = document.getElementById("replay-engines");
 		box.replaceChildren(element("legend", { textContent: "Engines" }));
 		for (const name of this.bodies.keys()) {
-			if (name === "truth") continue;
+			if (name === "truth" || !isShown(name)) continue;
 			const input = element("input", { type: "checkbox", checked: name !== "still", value: name });
-			input.addEventListener("change", () => this.redraw());
+			input.addEventListener("change", () => this.recolor());
 			box.append(element("label", {}, input, " ", engineName(name)));
 		}
 	}
@@ -94,14 +135,24 @@ class Replay {
 		return [...document.querySelectorAll("#replay-engines input:checked")].map((input) => input.value);
 	}
 
+	// How many views stand beside and above each other.
+	grid(count) {
+		const columns = Math.max(1, Math.ceil(Math.sqrt(count * this.canvas.clientWidth / this.canvas.clientHeight * 0.7)));
+		return { columns, rows: Math.max(1, Math.ceil(count / columns)) };
+	}
+
+	// So near that all that moves still fits each view.
 	aim() {
 		const names = this.bodies.has("truth") ? ["truth", ...this.shownEngines().slice(0, 1)] : this.shownEngines().slice(0, 1);
-		const sphere = boundsOf(this.data, names.length ? names : [...this.bodies.keys()]).getBoundingSphere(new THREE.Sphere());
-		const radius = Math.max(sphere.radius, 1e-3);
+		const box = boundsOf(this.data, names.length ? names : [...this.bodies.keys()]);
+		const radius = Math.max(box.getBoundingSphere(new THREE.Sphere()).radius, 1e-3);
+		const { columns, rows } = this.grid(document.getElementById("replay-layout").value === "over" ? 1 : this.shownEngines().length);
+		const aspect = (this.canvas.clientWidth / columns) / (this.canvas.clientHeight / rows) || 1;
+		const away = new THREE.Vector3(0.55, 0.35, 1).normalize();
 		this.camera.near = radius / 100;
 		this.camera.far = radius * 100;
-		this.controls.target.copy(sphere.center);
-		this.camera.position.copy(sphere.center).add(new THREE.Vector3(0.55, 0.35, 1).setLength(3.6 * radius));
+		box.getCenter(this.controls.target);
+		this.camera.position.copy(this.controls.target).addScaledVector(away, fitDistance(box, away, this.camera.fov, aspect));
 		this.controls.update();
 	}
 
@@ -116,14 +167,19 @@ class Replay {
 
 	// One view an engine, or one view of all.
 	draw() {
+		// on paper there is no canvas
+		if (!this.canvas.clientWidth) return;
 		const time = Number(this.slider.value), engines = this.shownEngines();
 		const isOver = document.getElementById("replay-layout").value === "over";
-		const byEngine = document.getElementById("replay-color").value === "engine" || !this.data.rests.length;
+		const coloring = this.coloring();
 		document.getElementById("replay-now").textContent = time.toFixed(3) + " s";
 		moveColliders(this.colliders, time);
 		for (const [name, body] of this.bodies) {
-			showBody(this.data, body, this.data.paths.get(name), time);
-			if (name !== "truth") paintBody(this.data, body, this.strains, this.range, byEngine ? looks.get(name).color : null);
+			const path = this.data.paths.get(name);
+			showBody(this.data, body, path, time);
+			if (name === "truth") continue;
+			coloring?.values(this, body.positions.array, path, time, this.values);
+			paintBody(this.data, body, this.values, this.range, coloring ? null : looks.get(name).color);
 		}
 		const views = isOver ? [engines] : engines.map((engine) => [engine]);
 		const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
@@ -133,8 +189,7 @@ class Replay {
 		this.renderer.setScissorTest(false);
 		this.renderer.clear();
 		this.renderer.setScissorTest(true);
-		const columns = Math.max(1, Math.ceil(Math.sqrt(views.length * width / height * 0.7)));
-		const rows = Math.max(1, Math.ceil(views.length / columns));
+		const { columns, rows } = this.grid(views.length);
 		views.forEach((names, i) => this.drawView(names, {
 			x: (i % columns) * width / columns, y: height - (Math.floor(i / columns) + 1) * height / rows,
 			width: width / columns, height: height / rows,
@@ -157,6 +212,13 @@ class Replay {
 		for (const [body, was] of visible) body.group.visible = was;
 	}
 
+	// On paper there is a picture in the canvas's place, whose own content is gone once it is shown.
+	print() {
+		if (!this.data) return;
+		this.draw();
+		document.getElementById("replay-print").src = this.canvas.toDataURL("image/png");
+	}
+
 	// Names stand over the views, as text that can be read and selected.
 	label(views, columns, rows, isOver) {
 		const layer = document.getElementById("replay-labels");
@@ -173,9 +235,13 @@ class Replay {
 	}
 
 	play(isPlaying) {
+		const wasPlaying = this.isPlaying;
 		this.isPlaying = isPlaying;
 		document.getElementById("replay-play").textContent = isPlaying ? "Pause" : "Play";
-		if (!isPlaying) return;
+		if (!isPlaying) {
+			if (wasPlaying) keepState("t", this.slider.value);
+			return;
+		}
 		const end = Number(this.slider.max);
 		if (Number(this.slider.value) >= end) this.slider.value = 0;
 		let before = performance.now();

@@ -33,6 +33,7 @@ function parseHeader(text) {
 	for (const line of text.split("\n")) {
 		const [key, ...words] = line.split(" ");
 		if (key === "path") header.paths.push(words[0]);
+		else if (key === "about") header.about = words.join(" ");
 		else if (key === "plane") header.planes.push(last = words.map(Number));
 		else if (solidKinds.includes(key)) header.solids.push(last = Object.assign(words.map(Number), { shape: key }));
 		else if (key === "body") header.bodies.push(words.map(Number));
@@ -47,9 +48,9 @@ function parseHeader(text) {
 // {columns, particles, cloth, planes, solids, bodies, times, springs, rests, triangles, paths: Map of name to positions}
 function parseReplay(buffer) {
 	const bytes = new Uint8Array(buffer);
-	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 20));
+	const start = new TextDecoder("latin1").decode(bytes.subarray(0, 1 << 13));
 	const headerSize = start.indexOf("\ndata\n") + "\ndata\n".length;
-	const replay = parseHeader(start.slice(0, headerSize));
+	const replay = parseHeader(new TextDecoder().decode(bytes.subarray(0, headerSize)));
 	const names = replay.paths;
 	let at = headerSize;
 	const take = (Kind, count) => {
@@ -105,4 +106,44 @@ function strainsAt(replay, positions, out) {
 		if (strain > out[a]) out[a] = strain;
 		if (strain > out[b]) out[b] = strain;
 	}
+}
+
+// The path that others are measured from: the truth's, or the first one's.
+function basePath(replay, names) {
+	return replay.paths.get("truth") || replay.paths.get(names[0]);
+}
+
+// Each particle's distance to a path at a time, m. Into out [particles].
+function distancesAt(replay, positions, base, time, out) {
+	const there = new Float32Array(positions.length);
+	positionsAt(replay, base, time, there);
+	for (let i = 0; i < out.length; i++)
+		out[i] = Math.hypot(positions[3 * i] - there[3 * i], positions[3 * i + 1] - there[3 * i + 1], positions[3 * i + 2] - there[3 * i + 2]);
+}
+
+// Each particle's speed between the frames about a time, m/s. Into out [particles].
+function speedsAt(replay, path, time, out) {
+	const { times } = replay, width = 3 * replay.particles;
+	let frame = 0;
+	while (frame < times.length - 2 && times[frame + 1] <= time) frame++;
+	const next = Math.min(frame + 1, times.length - 1), step = times[next] - times[frame];
+	for (let i = 0; i < out.length; i++) {
+		const change = (axis) => path[next * width + 3 * i + axis] - path[frame * width + 3 * i + axis];
+		out[i] = step > 0 ? Math.hypot(change(0), change(1), change(2)) / step : 0;
+	}
+}
+
+// The time at which paths are farthest, rms, from a truth that moves, or else from the first of them; the end where all
+// are one.
+function widestTime(replay, names) {
+	const truth = replay.paths.get("truth"), width = 3 * replay.particles, last = (replay.times.length - 1) * width;
+	const base = truth?.some((at, i) => i < width && at !== truth[last + i]) ? truth : replay.paths.get(names[0]);
+	let widest = replay.times.length - 1, most = 0;
+	for (const name of names)
+		for (let frame = 0; frame < replay.times.length; frame++) {
+			let sum = 0;
+			for (let i = frame * width; i < (frame + 1) * width; i++) sum += (replay.paths.get(name)[i] - base[i]) ** 2;
+			if (sum > most) [most, widest] = [sum, frame];
+		}
+	return replay.times[widest];
 }

@@ -99,15 +99,14 @@ function shadeCloth(replay, at, colors) {
 	}
 }
 
-function paintBody(replay, body, strains, range, engine) {
+//   values  of each particle, coloured over their range; null where the colour is the engine's own
+function paintBody(replay, body, values, range, engine) {
 	const out = body.colors.array;
 	if (engine) {
 		const color = new THREE.Color(engine);
 		for (let i = 0; i < replay.particles; i++) color.toArray(out, 3 * i);
-	} else {
-		strainsAt(replay, body.positions.array, strains);
-		for (let i = 0; i < replay.particles; i++) strainColor(strains[i] / range, out, 3 * i);
-	}
+	} else
+		for (let i = 0; i < replay.particles; i++) strainColor(values[i] / range, out, 3 * i);
 	for (const { material } of body.rigid) material.color.set(engine || 0x555555);
 	shadeCloth(replay, body.positions.array, out);
 	body.colors.needsUpdate = true;
@@ -181,4 +180,18 @@ function boundsOf(replay, names) {
 			if (!Number.isNaN(path[i])) box.expandByPoint(point.set(path[i], path[i + 1], path[i + 2]));
 	}
 	return box;
+}
+
+// How far from the middle of a box a camera sees all of it, and a tenth more.
+//   away  from the middle to the camera, of length 1;  fov  degrees, from top to bottom;  aspect  width by height
+function fitDistance(box, away, fov, aspect) {
+	const middle = box.getCenter(new THREE.Vector3()), tangent = Math.tan(fov / 2 * Math.PI / 180);
+	const right = new THREE.Vector3(0, 1, 0).cross(away).normalize(), up = away.clone().cross(right);
+	let distance = 1e-3;
+	for (let corner = 0; corner < 8; corner++) {
+		const at = new THREE.Vector3(...["x", "y", "z"].map((axis, i) => (corner >> i & 1 ? box.max : box.min)[axis])).sub(middle);
+		const needed = Math.max(Math.abs(at.dot(up)), Math.abs(at.dot(right)) / aspect) / tangent;
+		distance = Math.max(distance, at.dot(away) + needed);
+	}
+	return 1.1 * distance;
 }

@@ -31,7 +31,7 @@ async function sceneTables(scene) {
 	for (const { file, about } of report.tables) {
 		const found = await table(file);
 		if (!found || !found.columns.includes("scene")) continue;
-		const rows = found.rows.filter((row) => row.scene === scene);
+		const rows = found.rows.filter((row) => row.scene === scene && isRowShown(row));
 		const columns = found.columns.filter((column) => column !== "scene");
 		if (rows.length) made.push(tableDetails(`${file}: ${about}`, columns, rows));
 	}

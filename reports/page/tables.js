@@ -26,8 +26,19 @@ const looks = new Map(report.engines.map((engine) => [engine.name, engine]));
 function engineName(name) {
 	const look = looks.get(name);
 	const sign = element("span", { textContent: (look ? look.sign : "–") + " ", ariaHidden: "true" });
-	sign.style.color = look ? look.color : "#000000";
+	sign.style.setProperty("--mark", look ? look.color : "#707070");
 	return element("span", { className: "engine" }, sign, name);
+}
+
+// Text that is meant to be used elsewhere, with a button that takes it there.
+function copyable(text) {
+	const button = element("button", { type: "button", className: "copy", textContent: "copy", ariaLabel: `copy ${text}` });
+	button.addEventListener("click", async () => {
+		await navigator.clipboard.writeText(text);
+		button.textContent = "copied";
+		setTimeout(() => button.textContent = "copy", 1500);
+	});
+	return [element("code", { textContent: text }), " ", button];
 }
 
 function cell(column, text) {
@@ -36,7 +47,7 @@ function cell(column, text) {
 	const made = element("td", { className: isNumber ? "number" : "text" });
 	made.dataset.value = text;
 	if (column === "engine" || column === "other_engine") made.append(engineName(text));
-	else if (column === "command") made.append(element("code", { textContent: text }));
+	else if (["command", "settings"].includes(column) && text !== "") made.append(...copyable(text));
 	else made.textContent = isNumber ? readable(value) : text;
 	if (isNumber && made.textContent !== text) made.title = text;
 	return made;
@@ -73,6 +84,12 @@ function csvTable(columns, rows, caption) {
 function wideTable(columns, rows, caption) {
 	return element("div", { className: "wide", tabIndex: 0, role: "region", ariaLabel: caption },
 		csvTable(columns, rows, caption));
+}
+
+// A table in details, whose summary says of what; hidden where it is empty.
+function foldRefusals(details, rows, columns, title) {
+	details.hidden = !rows.length;
+	details.replaceChildren(element("summary", { textContent: title }), wideTable(columns, rows, title));
 }
 
 function fillSelect(select, names, chosen) {

@@ -168,6 +168,7 @@ class Live {
 
 	paint(body, index) {
 		const mode = byId("color").value;
+		strainsAt(this.scene, body.positions.array, this.strains);
 		paintBody(this.scene, body, this.strains, this.range(), mode === "engine" || !this.scene.rests.length ? this.colors[index] : null);
 		if (mode !== "first") return;
 		const here = body.positions.array, first = this.bodies[0].positions.array, out = body.colors.array;

@@ -39,8 +39,10 @@ static bool is_drawn(const ck_Spring *spring) {
 }
 
 // Room in the header for the motion of colliders, letters, and what a place of it takes.
-#define MOST_MOTION 5000
+#define MOST_MOTION 4500
 #define PLACE_LETTERS 50
+
+#define MOST_ABOUT ((size_t)500) // bytes
 
 // How far a collider has come at even times, which are joined by straight lines.
 // A solid's radius, and of what is no ball its axes and half its core along them; of a cylinder so much as is seen.
@@ -65,6 +67,16 @@ static void write_motion(FILE *file, const ck_Model *model, const ck_Path *path)
     fprintf(file, "\n");
 }
 
+// A sentence on one line, cut between letters where it is long.
+static void write_about(FILE *file, const char *about) {
+    size_t length = strlen(about);
+    if (length > MOST_ABOUT) length = MOST_ABOUT;
+    while (about[length] && ((unsigned char)about[length] & 0xc0) == 0x80) length--;
+    fprintf(file, "about ");
+    for (size_t i = 0; i < length; i++) fputc((unsigned char)about[i] < ' ' ? ' ' : about[i], file);
+    fputc('\n', file);
+}
+
 // stay, names: paths of an older replay, which come first; a name ends with its line.
 static void write_header(FILE *file, const ck_Comparison *comparison, int frames, int stay, const char *const *names) {
     const ck_Model *model = &comparison->model;
@@ -81,6 +93,7 @@ static void write_header(FILE *file, const ck_Comparison *comparison, int frames
         if (comparison->runs[i].trajectory.frame_count > 0)
             fprintf(file, "path %s\n", comparison->runs[i].engine->name);
     if (has_truth) fprintf(file, "path truth\n");
+    if (model->about) write_about(file, model->about);
     for (int i = 0; i < model->collider_count; i++) {
         const ck_Collider *collider = &model->colliders[i];
         const double *point = collider->point, *normal = collider->normal;

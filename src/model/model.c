@@ -47,6 +47,7 @@ static ck_Status copy_text(char **out, const char *text) {
 
 static ck_Status copy_labels(ck_Model *model, const ck_SceneFile *file) {
     ck_Status status = copy_text(&model->name, file->name);
+    if (!status) status = copy_text(&model->about, file->about);
     // none is what a scene says that is another one's but for its truth
     if (!status) status = copy_text(&model->truth, file->truth && strcmp(file->truth, "none") ? file->truth : NULL);
     model->measure = calloc(file->measure_count + 1, sizeof *model->measure);
@@ -374,6 +375,7 @@ void ck_model_free(ck_Model *model) {
     free(model->pinned);
     free(model->released);
     free(model->truth);
+    free(model->about);
     free(model->name);
     *model = (ck_Model){0};
 }

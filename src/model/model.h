@@ -136,6 +136,7 @@ typedef struct ck_Group {
 
 typedef struct ck_Model {
     char *name;
+    char *about; // a sentence; may be NULL
     ck_Body body;
     int particle_count;  // those of the cloth, and then a centre of each rigid body
     int columns;         // of a cloth: particle = row*columns + column; else 0

@@ -10,6 +10,7 @@
 //     frames 61
 //     paths 12
 //     path native-verlet               one a path, in their order; "truth" where there is one
+//     about A cloth falls on a ball.   one line, where the scene has a sentence
 //     plane 0 -1 0 0 1 0               any number of these: point and normal, m
 //     sphere 0 -1 0 0.3                and of these: centre and radius, m
 //     box 0 -1 0 0.1 1 0 0 0 1 0 0 0 1 0.3 0.2 0.4   or capsule or cylinder: centre, radius, three axes, half the core
