@@ -8,6 +8,12 @@ set border linewidth 0.8 linecolor '#444444'
 set grid linecolor '#d0d0d0' linewidth 0.6 dashtype 1
 set tics nomirror
 set key outside right top vertical Left reverse samplen 2 spacing 1.1
+# a column of a paper has no room beside a chart, and a caption of its own
+if (is_column) {
+	set key outside below center vertical maxrows 4 Left reverse samplen 1 spacing 0.9 width -2 font ',10'
+	set ylabel font ',10'
+	title = ''
+}
 set title title noenhanced
 set format y '%g'
 

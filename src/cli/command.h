@@ -33,7 +33,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_SPRING = 32768,
     CK_TAKES_STUDY = 65536,
     CK_TAKES_PART = 131072, // --shard, of scenes
-    CK_TAKES_VIEW = 262144
+    CK_TAKES_VIEW = 262144,
+    CK_TAKES_PAPER = 524288 // --format pdf, --width
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -65,6 +66,8 @@ typedef struct ck_Arguments {
     const char *points;      // of fit; NULL: none
     double uncertainty;      // of each of its coordinates, m
     const char *format;      // of export; NULL: json
+    bool is_pdf, has_width;  // charts for a paper
+    double paper_width;      // cm
     const char *path, *name; // of a recording; NULL: none
     double frame_cost,
         interval;             // ms that a frame of it cost, NaN: not known; s between frames of .npy, 0: as the scene

@@ -37,6 +37,8 @@ static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Erro
 static ck_Status add_tolerance(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_markdown(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_paper(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_width(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error);
 
 #define PLACE(member) offsetof(ck_Arguments, member)
@@ -136,6 +138,10 @@ static const Option table[] = {
     {"tolerance", "X%|METRIC=X", 0, CK_TAKES_UPDATE, OTHER, .read = add_tolerance,
      .help = "how far results may move besides their bands: a share of every metric, as 1%, or of one in its unit, as "
              "stretch_max=0.01; may be given several times"},
+    {"format", "FORMAT", 0, CK_TAKES_PAPER, OTHER, .read = set_paper, .fallback = "svg and png",
+     .help = "pdf: each chart also as PDF, for a paper"},
+    {"width", "WIDTH", 0, CK_TAKES_PAPER, OTHER, .read = set_width, .fallback = "8.5cm",
+     .help = "of a chart as PDF, as 8.5cm, 85mm or 3.35in"},
     {"port", "N", 0, CK_TAKES_VIEW, COUNT, PLACE(port), 1, 65535, .fallback = "one that is free",
      .help = "where the page is served, on 127.0.0.1"},
     {"speed", "X", 0, CK_TAKES_VIEW, NUMBER, PLACE(speed), 0, 100, .fallback = "1",
@@ -320,6 +326,29 @@ static ck_Status set_form(ck_Arguments *arguments, ck_AnswerForm form, ck_Error 
     return CK_OK;
 }
 
+static ck_Status set_paper(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    arguments->is_pdf = !strcmp(text, "pdf");
+    return arguments->is_pdf ? CK_OK
+                             : ck_fail(error, CK_BAD_INPUT, "--format %s: is none of a chart; it may be pdf", text);
+}
+
+static ck_Status set_width(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    static const struct {
+        const char *name;
+        double cm;
+    } units[] = {{"cm", 1}, {"mm", 0.1}, {"in", 2.54}};
+    char *unit;
+    const double number = strtod(text, &unit);
+    arguments->has_width = true;
+    arguments->paper_width = 0;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (unit != text && !strcmp(unit, units[i].name)) arguments->paper_width = number * units[i].cm;
+    const bool is_fit = arguments->paper_width >= 3 && arguments->paper_width <= 100;
+    return is_fit ? CK_OK
+                  : ck_fail(error, CK_BAD_INPUT,
+                            "--width %s: must be a width from 3cm to 100cm, as 8.5cm, 85mm or 3.35in", text);
+}
+
 static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error) {
     (void)text;
     return set_form(arguments, CK_ANSWER_JSON, error);
@@ -426,6 +455,7 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
                                 .frame = NAN,
                                 .timeout = 60,
                                 .speed = 1,
+                                .paper_width = 8.5,
                                 .uncertainty = 0.0003,
                                 .frame_cost = NAN,
                                 .fps = 60,

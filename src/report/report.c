@@ -14,7 +14,7 @@
 
 // Charts are files that a report has written, or the user's own things lie among them and would be lost.
 static ck_Status check_charts(const char *charts, ck_Error *error) {
-    static const char *const endings[] = {".svg", ".png", ".csv", ".gp", ".log"};
+    static const char *const endings[] = {".svg", ".png", ".pdf", ".csv", ".gp", ".log"};
     DIR *directory = opendir(charts);
     ck_Status status = CK_OK;
     if (!directory && errno != ENOENT) return ck_fail(error, CK_IO, "%s: %s", charts, strerror(errno));
@@ -67,7 +67,7 @@ static ck_Status replace(const Places *places, ck_Error *error) {
     return status;
 }
 
-ck_Status ck_report_write(const char *directory, ck_Error *error) {
+ck_Status ck_report_write(const char *directory, double paper_width, ck_Error *error) {
     char sources[PATH_MAX];
     ck_Status found = ck_template_sources(sources, sizeof sources, error);
     if (found) return found;
@@ -79,7 +79,7 @@ ck_Status ck_report_write(const char *directory, ck_Error *error) {
     if (!status && !(is_found && drawn)) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = check_charts(places.charts, error);
     if (!status) {
-        status = ck_charts_draw(&data, places.new_charts, sources, drawn, error);
+        status = ck_charts_draw(&data, places.new_charts, sources, paper_width, drawn, error);
         if (!status) status = ck_page_write(&data, sources, places.new_charts, drawn, places.new_page, error);
         if (!status) status = replace(&places, error);
         if (status) ck_path_remove(places.new_charts);

@@ -4,6 +4,7 @@
 #include "fixture_program.h"
 
 #include "engine.h"
+#include "files.h"
 #include "tables.h"
 
 #include <unistd.h>
@@ -154,6 +155,64 @@ static void test_readme(void **state) {
         shell("cmp %s/charts/%s.svg %s/readme/charts/%s.svg", readme, charts[i], fixture_directory, charts[i]);
 }
 
+// As wide as asked for, to a point of 1/72 in, which gnuplot cuts to; a chart of many letters is as wide as two columns
+// and 8 mm between them.
+static void test_paper(void **state) {
+    (void)state;
+    assert_int_equal(program("report %s/%s", "whole --format pdf --width 85mm"), 0);
+    const struct {
+        const char *chart;
+        double width;
+    } charts[] = {{"rope_hanging.cost", 8.5}, {"rope_hanging.deviations", 17.8}, {"summary", 17.8}};
+    for (size_t i = 0; i < sizeof charts / sizeof *charts; i++) {
+        char path[300], *bytes;
+        size_t size;
+        snprintf(path, sizeof path, "%s/whole/charts/%s.pdf", fixture_directory, charts[i].chart);
+        assert_int_equal(ck_file_read(&bytes, &size, path, NULL), CK_OK);
+        assert_memory_equal(bytes, "%PDF-", 5);
+        const char *box = memmem(bytes, size, "/MediaBox [ 0 0 ", strlen("/MediaBox [ 0 0 "));
+        assert_non_null(box);
+        assert_float_equal(strtod(box + strlen("/MediaBox [ 0 0 "), NULL) * 2.54 / 72, charts[i].width, 2.54 / 72);
+        free(bytes);
+    }
+    // a page that is written anew takes the place of the charts for a paper, too
+    assert_int_equal(program("report %s/%s", "whole"), 0);
+    shell("test ! -e %s/whole/charts/summary.pdf", fixture_directory);
+    static const char *const bad[] = {"--format png", "--width 8.5cm", "--format pdf --width 8.5",
+                                      "--format pdf --width 2cm", "--format pdf --width nan"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char words[100];
+        snprintf(words, sizeof words, "whole %s", bad[i]);
+        assert_int_equal(program("report %s/%s", words), 2);
+    }
+}
+
+// A sentence of the scene is one line of the header, and cut between letters where it is long.
+static void test_about(void **state) {
+    (void)state;
+    char path[300];
+    snprintf(path, sizeof path, "%s/told.yaml", fixture_directory);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "name: told\nabout: \"one\\npath five");
+    for (int i = 0; i < 400; i++) fprintf(file, "\xc3\xa9");
+    fprintf(file, "\"\nrope: {particles: 2, spacing: 1, mass: 1}\nsprings: {stiffness: 50}\npins: [first]\n"
+                  "gravity: [0, -9.81, 0]\ntime: {duration: 0.1, fps: 60}\n");
+    fclose(file);
+    char words[300];
+    snprintf(words, sizeof words, "told.yaml -e native-verlet --repeats 1 --out %s/told", fixture_directory);
+    assert_int_equal(program("compare %s/%s", words), 0);
+    ck_Replay replay;
+    ck_Error error = {0};
+    snprintf(words, sizeof words, "%s/told", fixture_directory);
+    if (ck_replay_read(&replay, words, "told", &error)) fail_msg("%s", error.message);
+    const char *line = strstr(replay.bytes, "\nabout ") + strlen("\nabout ");
+    assert_memory_equal(line, "one path five\xc3\xa9", strlen("one path five\xc3\xa9"));
+    // 500 bytes would end within a letter of two, for 13 stand before them
+    assert_int_equal(strcspn(line, "\n"), 499);
+    ck_replay_free(&replay);
+}
+
 // A replay holds the runs' own positions: the first frame is the model's start, and as many paths as there are runs.
 static void test_replay(void **state) {
     (void)state;
@@ -184,7 +243,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_report),     cmocka_unit_test(test_bad_files), cmocka_unit_test(test_no_gnuplot),
         cmocka_unit_test(test_undrawable), cmocka_unit_test(test_readme),    cmocka_unit_test(test_single_files),
-        cmocka_unit_test(test_replay),
+        cmocka_unit_test(test_replay),     cmocka_unit_test(test_paper),     cmocka_unit_test(test_about),
     };
     return cmocka_run_group_tests(tests, make_comparison, fixture_remove_directory);
 }

@@ -23,7 +23,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     arguments.options.budget = 0.1;
     arguments.options.enough = 0.2;
     if (!status) status = ck_command_compare_scenes(&arguments, show, &error);
-    if (!status) status = ck_report_write(arguments.out, &error);
+    if (!status) status = ck_report_write(arguments.out, 0, &error);
     if (!status) {
         ck_answer_line(&arguments.answer, CK_ANSWER_NOTE, "the page, to be opened in a browser: %s/index.html",
                        arguments.out);

@@ -4,6 +4,7 @@
 #include "process.h"
 
 #include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,29 +16,31 @@ static const ck_Chart charts[] = {
     {"summary", "Which engine for which scene: error, and the cheapest within 1 %",
      "scene,engine,status,metric,error,uncertainty,cpu_ms_per_s,timed_s,duration_s,class,is_cheapest,on_front,is_"
      "better,machine",
-     1300, 900, true, ck_chart_select_summary},
+     1300, 900, true, true, ck_chart_select_summary},
     {"cost", "error against cost at automatic settings",
-     "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status,still_error", 760, 470, false, ck_chart_select_cost},
+     "engine,cpu_ms_per_s,error,uncertainty,on_front,metric,status,still_error", 760, 470, false, false,
+     ck_chart_select_cost},
     {"precision", "error against cost over time steps and iterations",
-     "engine,cpu_s,error,on_own_front,on_front,uncertainty,rounding", 760, 520, false, ck_chart_select_precision},
-    {"iterations", "iterations against substeps at equal cost", "engine,iterations,cpu_s,error", 980, 640, false,
+     "engine,cpu_s,error,on_own_front,on_front,uncertainty,rounding", 760, 520, false, false,
+     ck_chart_select_precision},
+    {"iterations", "iterations against substeps at equal cost", "engine,iterations,cpu_s,error", 980, 640, false, true,
      ck_chart_select_iterations},
-    {"errors", "errors, and how well the truth is known", "engine,metric,error,uncertainty", 860, 470, false,
+    {"errors", "errors, and how well the truth is known", "engine,metric,error,uncertainty", 860, 470, false, false,
      ck_chart_select_errors},
-    {"sag", "sag against time", "engine,time_s,value,is_marked", 760, 430, false, ck_chart_select_sag},
-    {"energy", "energy against time", "engine,time_s,value,is_marked", 760, 430, false, ck_chart_select_energy},
-    {"height", "height above the colliders against time", "engine,time_s,value,is_marked", 760, 430, false,
+    {"sag", "sag against time", "engine,time_s,value,is_marked", 760, 430, false, false, ck_chart_select_sag},
+    {"energy", "energy against time", "engine,time_s,value,is_marked", 760, 430, false, false, ck_chart_select_energy},
+    {"height", "height above the colliders against time", "engine,time_s,value,is_marked", 760, 430, false, false,
      ck_chart_select_height},
-    {"deviations", "how far the engines are from each other", "engine,other_engine,deviation", 760, 640, false,
+    {"deviations", "how far the engines are from each other", "engine,other_engine,deviation", 760, 640, false, true,
      ck_chart_select_deviations},
     {"stability", "where methods fail (of two rows the upper one has more iterations)",
-     "engine,time_step_s,stiffness_factor,status,predicted_step_s,iterations,rounding_step_s", 1080, 1100, false,
+     "engine,time_step_s,stiffness_factor,status,predicted_step_s,iterations,rounding_step_s", 1080, 1100, false, true,
      ck_chart_select_stability},
-    {"needs", "what the scene needs", "left_out,metric,excess", 860, 430, false, ck_chart_select_needs},
-    {"refine", "what converges as the mesh gets finer", "engine,spacing_m,value,metric", 1080, 430, false,
+    {"needs", "what the scene needs", "left_out,metric,excess", 860, 430, false, false, ck_chart_select_needs},
+    {"refine", "what converges as the mesh gets finer", "engine,spacing_m,value,metric", 1080, 430, false, true,
      ck_chart_select_refine},
-    {"sweep", "The study", "engine,x,y,panel,key,metric,of,scene", 1080, 860, true, ck_chart_select_sweep},
-    {"size", "Cost against size", "engine,particles,time_s,metric", 1080, 480, true, ck_chart_select_size},
+    {"sweep", "The study", "engine,x,y,panel,key,metric,of,scene", 1080, 860, true, true, ck_chart_select_sweep},
+    {"size", "Cost against size", "engine,particles,time_s,metric", 1080, 480, true, true, ck_chart_select_size},
 };
 #define CHARTS ((int)(sizeof charts / sizeof *charts))
 
@@ -90,14 +93,43 @@ static void write_looks(FILE *file, const ck_ReportData *data) {
             data->engine_count + 1);
 }
 
-static void write_plot(FILE *file, const ck_Chart *chart, const char *scene, const char *terminal, const char *ending) {
+// Of gnuplot.
+static const char screen_svg[] = "svg", screen_png[] = "pngcairo", paper_pdf[] = "pdfcairo";
+
+#define POINTS_PER_CM (72 / 2.54)
+#define COLUMN_GAP 0.8     // cm, between two columns of a paper
+#define PAPER_LETTERS 0.46 // of 12 pt
+
+// On paper a chart is as wide as a column, its letters legible and its key below; or, where it has many letters, as two
+// columns, in the proportions of the screen.
+static void write_paper(FILE *file, const ck_Chart *chart, double column) {
+    const double width = chart->is_dense ? 2 * column + COLUMN_GAP : column,
+                 shape = (double)chart->height / chart->width;
+    const double scale = chart->is_dense ? width * POINTS_PER_CM / chart->width : PAPER_LETTERS;
+    fprintf(file,
+            "is_column = %d\nset terminal %s size %gcm,%gcm font 'sans,12' fontscale %g linewidth %g pointscale %g "
+            "background rgb 'white'\n",
+            !chart->is_dense, paper_pdf, width, width * (chart->is_dense ? shape : fmax(0.8, shape)), scale, scale,
+            scale);
+}
+
+static void write_terminal(FILE *file, const ck_Chart *chart, const char *terminal, double paper_width) {
+    if (terminal == paper_pdf)
+        write_paper(file, chart, paper_width);
+    else
+        fprintf(file, "is_column = 0\nset terminal %s size %d,%d font 'sans,12' background rgb 'white'\n", terminal,
+                chart->width, chart->height);
+}
+
+static void write_plot(FILE *file, const ck_Chart *chart, const char *scene, const char *terminal, const char *ending,
+                       double paper_width) {
     char name[200];
     ck_chart_file(name, sizeof name, chart, scene);
     fprintf(file, "print 'chart %s'\nreset\nload 'looks.gp'\ndata = '%s.csv'\ntitle = '%s%s%s'\n", name, name,
             chart->is_of_all ? "" : scene, chart->is_of_all ? "" : ": ", chart->title);
-    fprintf(file, "set terminal %s size %d,%d font 'sans,12' background rgb 'white'\nset output '%s.%s'\n", terminal,
-            chart->width, chart->height, name, ending);
-    fprintf(file, "load sources.'/common.gp'\nload sources.'/%s.gp'\nunset output\n", chart->name);
+    write_terminal(file, chart, terminal, paper_width);
+    fprintf(file, "set output '%s.%s'\n", name, ending);
+    fprintf(file, "load sources.'/common.gp'\nload sources.'/%s.gp'\nunset output\nundefine is_paper\n", chart->name);
 }
 
 // Writes a chart's CSV. Returns its rows, and without any takes it away; -1: it cannot be written.
@@ -173,7 +205,7 @@ static FILE *open_script(const char *directory, const char *name) {
 }
 
 static ck_Status write_script(FILE *file, const ck_ReportData *data, const char *directory, const char *sources,
-                              bool *drawn, ck_Error *error) {
+                              double paper_width, bool *drawn, ck_Error *error) {
     fprintf(file, "sources = '");
     write_quoted(file, sources);
     fprintf(file, "/charts'\n");
@@ -185,20 +217,21 @@ static ck_Status write_script(FILE *file, const ck_ReportData *data, const char 
             if (rows < 0) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(errno));
             drawn[scene * CHARTS + i] = rows > 0;
             if (!rows) continue;
-            write_plot(file, &charts[i], name, "svg", "svg");
-            write_plot(file, &charts[i], name, "pngcairo", "png");
+            write_plot(file, &charts[i], name, screen_svg, "svg", 0);
+            write_plot(file, &charts[i], name, screen_png, "png", 0);
+            if (paper_width > 0) write_plot(file, &charts[i], name, paper_pdf, "pdf", paper_width);
         }
     return CK_OK;
 }
 
-ck_Status ck_charts_draw(const ck_ReportData *data, const char *directory, const char *sources, bool *drawn,
-                         ck_Error *error) {
+ck_Status ck_charts_draw(const ck_ReportData *data, const char *directory, const char *sources, double paper_width,
+                         bool *drawn, ck_Error *error) {
     int failed = ck_path_make(directory);
     FILE *looks = failed ? NULL : open_script(directory, "looks.gp"),
          *script = looks ? open_script(directory, "charts.gp") : NULL;
     ck_Status status = script ? CK_OK : ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed ? failed : errno));
     if (!status) write_looks(looks, data);
-    if (!status) status = write_script(script, data, directory, sources, drawn, error);
+    if (!status) status = write_script(script, data, directory, sources, paper_width, drawn, error);
     if (looks && fclose(looks) && !status) status = ck_fail(error, CK_IO, "%s: %s", directory, strerror(errno));
     if (script && fclose(script) && !status) status = ck_fail(error, CK_IO, "%s: %s", directory, strerror(errno));
     return status ? status : run_gnuplot(directory, error);

@@ -15,6 +15,7 @@ typedef struct ck_Chart {
     const char *columns; // of its own CSV, which the script reads
     int width, height;   // px
     bool is_of_all;      // one for all scenes, named as the chart is; else one a scene, SCENE.NAME
+    bool is_dense;       // of more letters than a column of a paper has room for
     // Writes the chart's rows, of a scene where it is not of all. Returns how many; 0: there is nothing to show.
     int (*select)(const ck_ReportData *data, const char *scene, FILE *out);
 } ck_Chart;
@@ -36,10 +37,11 @@ ck_Look ck_chart_look(int engine);
 
 // Draws all charts that there are numbers for, as SVG and PNG with their numbers beside them, into directory, which is
 // made. drawn gets [scene_count + 1][chart count], row scene_count for those of all.
-//   sources  directory that holds the scripts, charts/NAME.gp
+//   sources      directory that holds the scripts, charts/NAME.gp
+//   paper_width  cm, of each as PDF, too; 0: none
 // Errors: CK_IO with what gnuplot says, CK_NO_MEMORY.
-ck_Status ck_charts_draw(const ck_ReportData *data, const char *directory, const char *sources, bool *drawn,
-                         ck_Error *error);
+ck_Status ck_charts_draw(const ck_ReportData *data, const char *directory, const char *sources, double paper_width,
+                         bool *drawn, ck_Error *error);
 
 // Selections, by the CSVs that they are made of.
 int ck_chart_select_summary(const ck_ReportData *data, const char *scene, FILE *out);
