@@ -2,6 +2,7 @@
 
 #include "orders.h"
 #include "template.h"
+#include "token.h"
 
 #include "springs.h"
 #include "vector.h"
@@ -39,7 +40,7 @@ typedef struct Order {
 typedef struct View {
     ck_Stage stage;
     struct mg_context *server;
-    char token[33], nonce[33], host[40], other_host[40], origin[60], other_origin[60];
+    char token[CK_TOKEN_SIZE], nonce[CK_TOKEN_SIZE], host[40], other_host[40], origin[60], other_origin[60];
     char *page, *intro; // the page, and what a viewer is told first
     size_t page_size;
     pthread_mutex_t lock; // of what follows
@@ -49,15 +50,6 @@ typedef struct View {
     int first_order, order_count;
     bool is_asked; // a viewer waits for the frame that is shown
 } View;
-
-static bool draw_token(char *token) {
-    unsigned char bytes[16];
-    const int file = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
-    const bool has = file >= 0 && read(file, bytes, sizeof bytes) == (ssize_t)sizeof bytes;
-    if (file >= 0) close(file);
-    for (size_t i = 0; i < sizeof bytes && has; i++) snprintf(token + 2 * i, 3, "%02x", bytes[i]);
-    return has;
-}
 
 // Equal in a time that does not tell where they differ.
 static bool is_token(const View *view, const char *query) {
@@ -473,7 +465,7 @@ ck_Status ck_view_run(ck_Live *live, const ck_ViewOptions *options, void (*ready
     view->intro = make_intro(live);
     if (!status) frame = calloc(frame_numbers(view), sizeof *frame);
     if (status || !view->orders || !view->intro || !frame) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!status && (!draw_token(view->token) || !draw_token(view->nonce)))
+    if (!status && (!ck_token_of_port(view->token, options->port) || !ck_token_draw(view->nonce)))
         status = ck_fail(error, CK_IO, "no random numbers for a token");
     if (!status) status = make_page(view, error);
     if (!status) status = start_server(view, options->port, address, sizeof address, error);

@@ -2,9 +2,10 @@
 //   CLOTHCHECK, CHROMIUM  programs;  SOURCES  the source tree;  SCREENSHOTS  where pictures are kept
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
 import { request } from "node:http";
 import { createRequire } from "node:module";
+import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -14,14 +15,24 @@ const { CLOTHCHECK, CHROMIUM, SOURCES, SCREENSHOTS } = process.env;
 const axeSource = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const engines = ["native-verlet", "native-xpbd", "bullet-pbd", "ode-quick"];
 
-let directory, server, address, browser, page;
+let directory, port, server, address, browser, page;
 const told = [];
 
-before(async () => {
-	directory = mkdtempSync(join(tmpdir(), "clothcheck-view-"));
-	server = spawn(CLOTHCHECK, ["view", "cloth_two_corners", "--no-browser", "--out", directory, ...engines.flatMap((name) => ["-e", name])],
-		{ cwd: SOURCES });
-	address = await new Promise((resolve, reject) => {
+// One that nobody has at this moment.
+function freePort() {
+	return new Promise((resolve) => {
+		const one = createServer().listen(0, "127.0.0.1", () => {
+			const { port } = one.address();
+			one.close(() => resolve(port));
+		});
+	});
+}
+
+// Starts a server on the port, and returns its address.
+function startServer(scene, engines) {
+	server = spawn(CLOTHCHECK, ["view", scene, "--no-browser", "--port", port, "--out", directory, ...engines.flatMap((name) => ["-e", name])],
+		{ cwd: SOURCES, env: { ...process.env, XDG_RUNTIME_DIR: directory } });
+	return new Promise((resolve, reject) => {
 		let said = "";
 		server.stdout.on("data", (data) => {
 			said += data;
@@ -30,6 +41,19 @@ before(async () => {
 		});
 		server.on("exit", () => reject(new Error(said)));
 	});
+}
+
+// Its exit status.
+async function endServer() {
+	server.kill("SIGINT");
+	await new Promise((resolve) => (server.exitCode === null ? server.on("exit", resolve) : resolve()));
+	return server.exitCode;
+}
+
+before(async () => {
+	directory = mkdtempSync(join(tmpdir(), "clothcheck-view-"));
+	port = await freePort();
+	address = await startServer("cloth_two_corners", engines);
 	browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 		"--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
 	page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
@@ -270,8 +294,20 @@ test("axe has nothing to object to, in light and in dark", async () => {
 
 test("a server that has ended is missed", async () => {
 	assert.deepEqual(told, []);
-	server.kill("SIGINT");
+	assert.equal(await endServer(), 0);
 	await page.waitForFunction(() => /the server has gone/.test(document.getElementById("status").textContent), null, { timeout: 20000 });
-	await new Promise((resolve) => (server.exitCode === null ? server.on("exit", resolve) : resolve()));
-	assert.equal(server.exitCode, 0);
+});
+
+test("started again on its port it is found, with whatever scene it has now", async () => {
+	const kept = join(directory, `clothcheck-view-${port}`);
+	assert.equal(statSync(kept).mode & 0o777, 0o600);
+	assert.equal(await startServer("rope_hanging", ["native-verlet", "mujoco"]), address);
+	await page.waitForFunction(() => document.getElementById("scene").textContent === "rope_hanging", null, { timeout: 20000 });
+	await page.waitForFunction(() => globalThis.live.frame?.engines.length === 2 && globalThis.live.frame.number > 10, null, { timeout: 20000 });
+	await endServer();
+	// a secret that others can read is none
+	chmodSync(kept, 0o644);
+	assert.notEqual(await startServer("rope_hanging", ["native-verlet"]), address);
+	assert.equal(statSync(kept).mode & 0o777, 0o600);
+	await endServer();
 });
