@@ -16,16 +16,6 @@ async function strainRange(scene) {
 	return truth || values[Math.floor(values.length / 2)] || 0.01;
 }
 
-// What colours tell: each particle's values at a time, and the title of their scale.
-const colorings = {
-	strain: { title: () => "strain of a particle's most stretched spring", unit: "", isThere: (data) => data.rests.length > 0,
-		values: (replay, positions, path, time, out) => strainsAt(replay.data, positions, out) },
-	distance: { title: (data) => data.paths.has("truth") ? "distance to the truth" : "distance to the first engine", unit: " m", isThere: () => true,
-		values: (replay, positions, path, time, out) => distancesAt(replay.data, positions, basePath(replay.data, replay.shownEngines()), time, out) },
-	speed: { title: () => "speed", unit: " m/s", isThere: () => true,
-		values: (replay, positions, path, time, out) => speedsAt(replay.data, path, time, out) },
-};
-
 class Replay {
 	constructor() {
 		this.canvas = document.getElementById("replay-canvas");
@@ -95,15 +85,7 @@ class Replay {
 	// Colours reach to what the engine in the middle has at most; of strain, to the truth's.
 	rangeOf(coloring) {
 		if (coloring === colorings.strain) return this.strainRange;
-		const most = this.shownEngines().map((name) => {
-			const path = this.data.paths.get(name), positions = new Float32Array(3 * this.data.particles);
-			return Math.max(...[0.2, 0.4, 0.6, 0.8, 1].map((share) => {
-				positionsAt(this.data, path, share * this.slider.max, positions);
-				coloring.values(this, positions, path, share * this.slider.max, this.values);
-				return this.values.reduce((a, b) => Math.max(a, b || 0), 0);
-			}));
-		}).sort((a, b) => a - b);
-		return most[Math.floor(most.length / 2)] || 1e-9;
+		return middleOfMost(this, coloring, Number(this.slider.max));
 	}
 
 	recolor() {

@@ -195,3 +195,11 @@ function fitDistance(box, away, fov, aspect) {
 	}
 	return 1.1 * distance;
 }
+
+// How many views stand beside each other where they are as large as can be.
+function columnsFor(count, width, height) {
+	const side = (columns) => Math.min(width / columns, height / Math.ceil(count / columns));
+	let best = 1;
+	for (let columns = 2; columns <= count; columns++) if (side(columns) > side(best)) best = columns;
+	return best;
+}

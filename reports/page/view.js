@@ -11,14 +11,6 @@ const short = (value) => (Number.isFinite(value) ? String(Number(value.toPrecisi
 const percentOf = (value) => (Number.isFinite(value) ? `${Number((100 * value).toPrecision(3))} %` : "–");
 const headNumbers = 4, engineNumbers = 6;
 
-// How many views stand beside each other: so that each is as large as can be.
-function columnsFor(count, width, height) {
-	const side = (columns) => Math.min(width / columns, height / Math.ceil(count / columns));
-	let best = 1;
-	for (let columns = 2; columns <= count; columns++) if (side(columns) > side(best)) best = columns;
-	return best;
-}
-
 class Live {
 	constructor() {
 		this.token = new URLSearchParams(location.search).get("t") || "";

@@ -34,7 +34,8 @@ typedef enum ck_ArgumentGroup {
     CK_TAKES_STUDY = 65536,
     CK_TAKES_PART = 131072, // --shard, of scenes
     CK_TAKES_VIEW = 262144,
-    CK_TAKES_PAPER = 524288 // --format pdf, --width
+    CK_TAKES_PAPER = 524288, // --format pdf, --width
+    CK_TAKES_FILM = 1048576
 } ck_ArgumentGroup;
 
 typedef struct ck_Command ck_Command;
@@ -54,7 +55,7 @@ extern const ck_Command ck_command_demo, ck_command_fit, ck_command_list, ck_com
     ck_command_check, ck_command_precision, ck_command_stability, ck_command_tune, ck_command_needs, ck_command_refine,
     ck_command_merge, ck_command_report, ck_command_claims, ck_command_bench, ck_command_code, ck_command_score,
     ck_command_export, ck_command_conform, ck_command_diff, ck_command_new_engine, ck_command_means,
-    ck_command_findings, ck_command_study, ck_command_view;
+    ck_command_findings, ck_command_study, ck_command_view, ck_command_film;
 
 // What stands on a command line.
 typedef struct ck_Arguments {
@@ -62,12 +63,14 @@ typedef struct ck_Arguments {
     ck_CompareOptions options;
     const ck_Engine *engines[CK_COMPARISON_MAX_ENGINES];
     ck_Override overrides[64];
-    const char *out;         // directory; NULL: none
-    const char *points;      // of fit; NULL: none
-    double uncertainty;      // of each of its coordinates, m
-    const char *format;      // of export; NULL: json
-    bool is_pdf, has_width;  // charts for a paper
-    double paper_width;      // cm
+    const char *out;          // directory; NULL: none
+    const char *points;       // of fit; NULL: none
+    double uncertainty;       // of each of its coordinates, m
+    const char *format;       // of export; NULL: json
+    bool is_pdf, has_width;   // charts for a paper
+    double paper_width;       // cm
+    const char *film, *color; // NULL: the scene's name .mp4; strain
+    int film_fps, film_width, film_height;
     const char *path, *name; // of a recording; NULL: none
     double frame_cost,
         interval;             // ms that a frame of it cost, NaN: not known; s between frames of .npy, 0: as the scene

@@ -11,11 +11,12 @@
 
 // Adding a command is one file, one line here and one in command.h.
 static const ck_Command *const commands[] = {
-    &ck_command_demo,   &ck_command_list,      &ck_command_view,       &ck_command_run,     &ck_command_compare,
-    &ck_command_check,  &ck_command_precision, &ck_command_stability,  &ck_command_tune,    &ck_command_needs,
-    &ck_command_refine, &ck_command_study,     &ck_command_fit,        &ck_command_conform, &ck_command_export,
-    &ck_command_score,  &ck_command_code,      &ck_command_new_engine, &ck_command_means,   &ck_command_findings,
-    &ck_command_diff,   &ck_command_merge,     &ck_command_report,     &ck_command_claims,  &ck_command_bench,
+    &ck_command_demo,     &ck_command_list,   &ck_command_view,      &ck_command_film,       &ck_command_run,
+    &ck_command_compare,  &ck_command_check,  &ck_command_precision, &ck_command_stability,  &ck_command_tune,
+    &ck_command_needs,    &ck_command_refine, &ck_command_study,     &ck_command_fit,        &ck_command_conform,
+    &ck_command_export,   &ck_command_score,  &ck_command_code,      &ck_command_new_engine, &ck_command_means,
+    &ck_command_findings, &ck_command_diff,   &ck_command_merge,     &ck_command_report,     &ck_command_claims,
+    &ck_command_bench,
 };
 #define COMMANDS ((int)(sizeof commands / sizeof *commands))
 

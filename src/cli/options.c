@@ -39,6 +39,8 @@ static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *e
 static ck_Status set_markdown(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_paper(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_width(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_color(ck_Arguments *arguments, const char *text, ck_Error *error);
+static ck_Status set_size(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error);
 
 #define PLACE(member) offsetof(ck_Arguments, member)
@@ -142,6 +144,12 @@ static const Option table[] = {
      .help = "pdf: each chart also as PDF, for a paper"},
     {"width", "WIDTH", 0, CK_TAKES_PAPER, OTHER, .read = set_width, .fallback = "8.5cm",
      .help = "of a chart as PDF, as 8.5cm, 85mm or 3.35in"},
+    {"out", "FILE", 'o', CK_TAKES_FILM, TEXT, PLACE(film), .fallback = "SCENE.mp4",
+     .help = "the film: FILE.mp4 or FILE.gif"},
+    {"color", "QUANTITY", 0, CK_TAKES_FILM, OTHER, .read = set_color, .fallback = "strain",
+     .help = "strain, distance (to the truth), speed or engine"},
+    {"fps", "N", 0, CK_TAKES_FILM, COUNT, PLACE(film_fps), 1, 120, .fallback = "30", .help = "frames a second"},
+    {"size", "WxH", 0, CK_TAKES_FILM, OTHER, .read = set_size, .fallback = "1280x720", .help = "px, even numbers"},
     {"port", "N", 0, CK_TAKES_VIEW, COUNT, PLACE(port), 1, 65535, .fallback = "one that is free",
      .help = "where the page is served, on 127.0.0.1"},
     {"speed", "X", 0, CK_TAKES_VIEW, NUMBER, PLACE(speed), 0, 100, .fallback = "1",
@@ -349,6 +357,28 @@ static ck_Status set_width(ck_Arguments *arguments, const char *text, ck_Error *
                             "--width %s: must be a width from 3cm to 100cm, as 8.5cm, 85mm or 3.35in", text);
 }
 
+static ck_Status set_color(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    static const char *const colors[] = {"strain", "distance", "speed", "engine"};
+    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+        if (!strcmp(text, colors[i])) arguments->color = colors[i];
+    return arguments->color
+               ? CK_OK
+               : ck_fail(error, CK_BAD_INPUT, "--color %s: must be strain, distance, speed or engine", text);
+}
+
+// Even numbers, for a video's colours are of two by two pixels.
+static ck_Status set_size(ck_Arguments *arguments, const char *text, ck_Error *error) {
+    char *middle, *end;
+    const long width = strtol(text, &middle, 10), height = *middle == 'x' ? strtol(middle + 1, &end, 10) : 0;
+    const bool is_whole = *middle == 'x' && !*end;
+    if (!is_whole || width < 200 || height < 200 || width > 3840 || height > 2160 || width % 2 || height % 2)
+        return ck_fail(error, CK_BAD_INPUT,
+                       "--size %s: must be two even numbers from 200x200 to 3840x2160, as 1280x720", text);
+    arguments->film_width = (int)width;
+    arguments->film_height = (int)height;
+    return CK_OK;
+}
+
 static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error) {
     (void)text;
     return set_form(arguments, CK_ANSWER_JSON, error);
@@ -441,9 +471,9 @@ static void list_options(const ck_Command *command, struct option *options, char
     *letters = 0;
 }
 
-static const Option *option_of(int found) {
+static const Option *option_of(const ck_Command *command, int found) {
     for (int i = 0; found < FIRST_LONG && i < OPTIONS; i++)
-        if (table[i].letter == found) return &table[i];
+        if (table[i].letter == found && table[i].groups & command->groups) return &table[i];
     return &table[found - FIRST_LONG];
 }
 
@@ -456,6 +486,9 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
                                 .timeout = 60,
                                 .speed = 1,
                                 .paper_width = 8.5,
+                                .film_fps = 30,
+                                .film_width = 1280,
+                                .film_height = 720,
                                 .uncertainty = 0.0003,
                                 .frame_cost = NAN,
                                 .fps = 60,
@@ -484,7 +517,7 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
             bool is_letter = optopt > ' ' && optopt < 127;
             return fail_option(command, found, is_letter ? letter : argv[optind - 1], error);
         }
-        const Option *option = option_of(found);
+        const Option *option = option_of(command, found);
         status = read_option(arguments, option, optarg, error);
         if (!status && !option->is_way) status = add_to_question(arguments, option->name, optarg, error);
     }

@@ -75,7 +75,8 @@ static ck_Status run_one(ck_Comparison *comparison, ck_Arguments *arguments, con
     if (!status && unfinished->directory) status = ck_unfinished_keep(unfinished, comparison, options, error);
     if (!status && arguments->out) ck_tables_add(tables, comparison, options);
     if (!status && arguments->out && !unfinished->directory)
-        status = ck_replay_write(comparison, arguments->out, arguments->appends && arguments->by_engine, error);
+        status = ck_replay_write(comparison, arguments->out, arguments->appends && arguments->by_engine,
+                                 CK_REPLAY_FRAMES, error);
     if (!status) show(arguments, comparison);
     return status;
 }

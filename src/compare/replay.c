@@ -12,8 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define MOST_FRAMES 61
-#define MOST_BYTES ((size_t)4 << 20)
+#define MOST_BYTES_A_FRAME (((size_t)4 << 20) / CK_REPLAY_FRAMES)
 
 // A rigid body is its centre and, behind all particles, the tips of its first two axes, which tell how it is turned.
 static int drawn_particles(const ck_Model *model) {
@@ -21,10 +20,10 @@ static int drawn_particles(const ck_Model *model) {
 }
 
 // The frames that are kept: every stride-th, and the last.
-static int find_stride(const ck_Model *model, int paths) {
+static int find_stride(const ck_Model *model, int paths, int most_frames) {
     size_t frame_bytes = (size_t)paths * (size_t)drawn_particles(model) * 3 * sizeof(float);
-    size_t most = MOST_BYTES / frame_bytes;
-    if (most > MOST_FRAMES) most = MOST_FRAMES;
+    size_t most = (size_t)most_frames * MOST_BYTES_A_FRAME / frame_bytes;
+    if (most > (size_t)most_frames) most = (size_t)most_frames;
     if (most < 2) most = 2;
     return (model->frame_count + (int)most - 2) / ((int)most - 1);
 }
@@ -166,9 +165,9 @@ static void write_paths(FILE *file, const ck_Comparison *comparison, int stride,
     if (comparison->truth.path_count) write_path(file, model, &truth->trajectory, truth->is_static, stride, frames);
 }
 
-static void write_all(FILE *file, const ck_Comparison *comparison) {
+static void write_all(FILE *file, const ck_Comparison *comparison, int most_frames) {
     const ck_Model *model = &comparison->model;
-    int stride = find_stride(model, comparison->run_count + 1);
+    int stride = find_stride(model, comparison->run_count + 1, most_frames);
     int frames = (model->frame_count + stride - 1) / stride + 1;
     write_header(file, comparison, frames, 0, NULL);
     for (int i = 0; i < frames; i++) write_float(file, kept_frame(model, stride, i) * model->step);
@@ -206,7 +205,7 @@ static void write_joined(FILE *file, const ck_Comparison *comparison, const ck_R
     write_header(file, comparison, old->frame_count, stay, names);
     fwrite(data, 1, front, file);
     for (int i = 0; i < stay; i++) fwrite(data + front + (size_t)numbers[i] * path_bytes, 1, path_bytes, file);
-    int stride = find_stride(model, 1);
+    int stride = find_stride(model, 1, CK_REPLAY_FRAMES);
     // its frames are every stride-th, of whatever stride it was made with
     float second = 0;
     if (old->frame_count > 1) memcpy(&second, data + sizeof second, sizeof second);
@@ -214,7 +213,8 @@ static void write_joined(FILE *file, const ck_Comparison *comparison, const ck_R
     write_paths(file, comparison, stride, old->frame_count);
 }
 
-ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, ck_Error *error) {
+ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, int most_frames,
+                          ck_Error *error) {
     ck_Replay old = {0};
     joins = joins && !ck_replay_read(&old, directory, comparison->model.name, NULL) &&
             old.particle_count == drawn_particles(&comparison->model) &&
@@ -227,7 +227,7 @@ ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory
         if (joins)
             write_joined(whole.file, comparison, &old);
         else
-            write_all(whole.file, comparison);
+            write_all(whole.file, comparison, most_frames);
         status = ck_whole_file_close(&whole, error);
     }
     ck_whole_file_discard(&whole);

@@ -84,9 +84,14 @@ ck_Status ck_kept_copy(const ck_Kept *kept, ck_Csv *csv, const ck_Layout *layout
 // The paths of a comparison's runs and of its truth, thinned to what is worth looking at. One file a scene;
 // replay_file.h has its format.
 
-// Writes a finished comparison's replay below a directory: every k-th frame and the last, so that there are at most 61
-// and the file has some 4 MiB. Errors: CK_IO, CK_NO_MEMORY, and then there is none.
-//   joins  the paths of other engines that a replay of the scene holds already stay, at its frames
-ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, ck_Error *error);
+// Frames of a replay for a page: at most so many, and some 4 MiB of them.
+#define CK_REPLAY_FRAMES 61
+
+// Writes a finished comparison's replay below a directory: every k-th frame and the last. Errors: CK_IO, CK_NO_MEMORY,
+// and then there is none.
+//   joins        the paths of other engines that a replay of the scene holds already stay, at its frames
+//   most_frames  that are kept, of which a file of 61 has some 4 MiB at most
+ck_Status ck_replay_write(const ck_Comparison *comparison, const char *directory, bool joins, int most_frames,
+                          ck_Error *error);
 
 #endif

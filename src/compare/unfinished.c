@@ -112,7 +112,7 @@ ck_Status ck_unfinished_keep(const ck_Unfinished *unfinished, const ck_Compariso
     ck_Tables tables = {0};
     char *folder = folder_of(unfinished, comparison);
     ck_Status status = folder ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!status) status = ck_replay_write(comparison, unfinished->directory, false, error);
+    if (!status) status = ck_replay_write(comparison, unfinished->directory, false, CK_REPLAY_FRAMES, error);
     if (!status) status = ck_tables_open(&tables, folder, CK_KEEP_NONE, false, comparison, 1, options, error);
     if (!status) ck_tables_add(&tables, comparison, options);
     // machine.csv is the last of them: with it the scene is whole

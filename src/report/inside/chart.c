@@ -1,15 +1,13 @@
 #include "chart.h"
 
 #include "files.h"
-#include "process.h"
+#include "look.h"
+#include "tool.h"
 
 #include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 static const ck_Chart charts[] = {
@@ -57,22 +55,6 @@ void ck_chart_file(char *name, size_t size, const ck_Chart *chart, const char *s
         snprintf(name, size, "%s", chart->name);
     else
         snprintf(name, size, "%s.%s", scene, chart->name);
-}
-
-// Told apart without colour; contrast with white is at least 4.5 for all. Beyond the table the colours come again with
-// other marks.
-ck_Look ck_chart_look(int engine) {
-    static const ck_Look looks[] = {
-        {"#00629b", 7, "●", "1"},  {"#b84300", 5, "■", "2"},  {"#00704f", 9, "▲", "3"},
-        {"#5d3fa8", 13, "◆", "4"}, {"#7a5c10", 2, "×", "5"},  {"#5f5f5f", 1, "+", "(8,4)"},
-        {"#b0237f", 6, "○", "1"},  {"#882255", 4, "□", "2"},  {"#9a5200", 8, "△", "3"},
-        {"#1d6b2f", 12, "◇", "4"}, {"#332288", 10, "▽", "5"}, {"#707070", 3, "✱", "(2,4)"},
-        {"#a01515", 14, "⬠", "1"}, {"#006d77", 15, "⬟", "2"},
-    };
-    const int count = sizeof looks / sizeof *looks;
-    ck_Look look = looks[(engine + engine / count) % count];
-    look.color = looks[engine % count].color;
-    return look;
 }
 
 // As gnuplot reads it between single quotes.
@@ -151,16 +133,6 @@ static int write_numbers(const ck_ReportData *data, const ck_Chart *chart, const
     return rows;
 }
 
-// Waits for gnuplot, and ends it where a signal asks for that.
-static ck_Status wait_for(pid_t child, int *state, ck_Error *error) {
-    const struct timespec pause = {.tv_nsec = 20000000};
-    while (waitpid(child, state, WNOHANG) == 0) {
-        if (ck_child_interrupted) kill(child, SIGKILL);
-        nanosleep(&pause, NULL);
-    }
-    return ck_child_interrupted ? ck_fail(error, CK_IO, "interrupted; no report was written") : CK_OK;
-}
-
 // What gnuplot said of the chart that it ended in.
 static void read_complaint(char *text, size_t size, const char *directory) {
     char *path = ck_path_join(directory, "gnuplot.log"), *log = NULL;
@@ -180,17 +152,11 @@ static void read_complaint(char *text, size_t size, const char *directory) {
 
 // Runs gnuplot on charts.gp in the directory. What it says goes to gnuplot.log there.
 static ck_Status run_gnuplot(const char *directory, ck_Error *error) {
-    int state = -1;
-    pid_t child = fork();
-    if (child == 0) {
-        if (chdir(directory) || !freopen("gnuplot.log", "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(126);
-        execlp("gnuplot", "gnuplot", "-d", "charts.gp", (char *)NULL);
-        _exit(127);
-    }
-    if (child < 0) return ck_fail(error, CK_IO, "gnuplot cannot be started: %s", strerror(errno));
-    ck_Status status = wait_for(child, &state, error);
-    if (status || (WIFEXITED(state) && !WEXITSTATUS(state))) return status;
-    if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
+    static const char *const words[] = {"gnuplot", "-d", "charts.gp", NULL};
+    int end;
+    ck_Status status = ck_tool_run(&end, words, directory, "gnuplot.log", 0, error);
+    if (status || end == 0) return status;
+    if (end == CK_TOOL_MISSING)
         return ck_fail(error, CK_IO, "gnuplot is not there; charts need Debian's package gnuplot-nox or its like");
     char complaint[400];
     read_complaint(complaint, sizeof complaint, directory);

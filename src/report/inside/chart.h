@@ -26,15 +26,6 @@ const ck_Chart *ck_chart_at(int index);
 // The name of a chart's files without their ending, into name. scene may be NULL for one of all.
 void ck_chart_file(char *name, size_t size, const ck_Chart *chart, const char *scene);
 
-// How an engine looks in every chart: colour, mark and dashes by its place in data->engines.
-typedef struct ck_Look {
-    const char *color; // #rrggbb
-    int mark;          // gnuplot's point type
-    const char *sign;  // the same as a character
-    const char *dash;  // gnuplot's dash type
-} ck_Look;
-ck_Look ck_chart_look(int engine);
-
 // Draws all charts that there are numbers for, as SVG and PNG with their numbers beside them, into directory, which is
 // made. drawn gets [scene_count + 1][chart count], row scene_count for those of all.
 //   sources      directory that holds the scripts, charts/NAME.gp

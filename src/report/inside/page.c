@@ -3,6 +3,7 @@
 #include "chart.h"
 #include "engines.h"
 #include "files.h"
+#include "look.h"
 #include "finding.h"
 #include "process.h"
 #include "replay_pack.h"
