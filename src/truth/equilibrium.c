@@ -91,13 +91,22 @@ static double norm_of_free(const ck_Model *model, const double *gradient) {
     return sqrt(sum);
 }
 
+// What counts as touched, of the size: contact is found to some 1e-15 of it.
+#define NEAR 1e-9
+
 double ck_equilibrium_residual(const ck_Model *model, const double *position) {
     double *gradient = malloc(3 * sizeof(double) * (size_t)model->particle_count);
     if (!gradient) return -1;
+    const double origin[3] = {0};
+    ck_Touching *touching;
+    bool is_outside = true;
     energy_of(model, position, gradient);
-    double residual = norm_of_free(model, gradient) / ck_stability_load(model);
+    ck_Status status = ck_touching_create(&touching, model, origin, 1);
+    if (!status && touching) is_outside = ck_touching_hold(touching, position, NEAR * model->size, gradient);
+    double residual = is_outside ? norm_of_free(model, gradient) / ck_stability_load(model) : INFINITY;
+    ck_touching_free(touching);
     free(gradient);
-    return residual;
+    return status ? -1 : residual;
 }
 
 // Adds one 3×3 block below or on the diagonal; the triplet's duplicates are summed by CHOLMOD.

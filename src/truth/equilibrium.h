@@ -42,7 +42,8 @@ ck_Status ck_equilibrium_release(ck_Equilibrium *equilibrium, const ck_Model *mo
 // The energy of any position, J.
 double ck_equilibrium_energy(const ck_Model *model, const double *position);
 
-// |Σ force| / total load of any position: how far from equilibrium it is. Negative: out of memory.
+// |Σ force| / total load of any position, but for what the surfaces that it touches can hold: how far from equilibrium
+// it is. Infinite where something is inside a surface. Negative: out of memory.
 double ck_equilibrium_residual(const ck_Model *model, const double *position);
 
 // The stiffness K of a network about a place, factorised.

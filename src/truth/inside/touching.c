@@ -3,6 +3,7 @@
 #include "collider.h"
 #include "vector.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,6 +108,20 @@ bool ck_touching_block(const ck_Touching *touching, const ck_TouchingPair *pair,
         gap_of(touching, pair, position, before, one);
         gap_of(touching, pair, position, after, other);
         for (int row = 0; row < 3; row++) block[3 * row + k] -= push * (other[row] - one[row]) / (2 * NUDGE * size);
+    }
+    return true;
+}
+
+// Pairs of the cloth come first: a body that it carries has its load from them, and what holds the body holds both.
+bool ck_touching_hold(const ck_Touching *touching, const double *position, double near, double *gradient) {
+    for (int i = 0; i < touching->count; i++) {
+        const ck_TouchingPair *pair = &touching->pairs[i];
+        double normal[3];
+        const double gap = gap_of(touching, pair, position, position + 3 * pair->particle, normal);
+        if (gap < -near) return false;
+        const double press = gap <= near ? fmax(0, ck_dot(gradient + 3 * pair->particle, normal)) : 0;
+        ck_add_scaled(gradient + 3 * pair->particle, -press, normal);
+        if (pair->other >= 0) ck_add_scaled(gradient + 3 * pair->other, press, normal);
     }
     return true;
 }

@@ -36,6 +36,10 @@ double ck_touching_energy(const ck_Touching *touching, const double *position, d
 // its opposite. False where it is 0.
 bool ck_touching_block(const ck_Touching *touching, const ck_TouchingPair *pair, const double *position, double *block);
 
+// Takes from a gradient, [3*n] N, what surfaces that are touched can hold: of each particle no further away than near,
+// m, the part that presses on it, which the other of the two gets. False where one is deeper inside than near.
+bool ck_touching_hold(const ck_Touching *touching, const double *position, double near, double *gradient);
+
 // Sets the forces anew. Returns how far gaps and forces do not fit, m.
 double ck_touching_update(ck_Touching *touching, const double *position);
 
