@@ -238,19 +238,9 @@ class Replay {
 		requestAnimationFrame(step);
 	}
 
-	// Arrow keys turn the camera about what it looks at, + and - bring it closer.
 	turn(event) {
-		const turns = { ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1],
-			"+": [0, 0, 0.9], "-": [0, 0, 1.1] };
-		if (!turns[event.key] || !this.data) return;
+		if (!this.data || !turnCamera(this.camera, this.controls.target, event.key)) return;
 		event.preventDefault();
-		const [around, over, closer] = turns[event.key];
-		const place = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target));
-		place.theta += around;
-		place.phi += over;
-		place.radius *= closer;
-		place.makeSafe();
-		this.camera.position.setFromSpherical(place).add(this.controls.target);
 		this.controls.update();
 		this.redraw();
 	}

@@ -203,3 +203,18 @@ function columnsFor(count, width, height) {
 	for (let columns = 2; columns <= count; columns++) if (side(columns) > side(best)) best = columns;
 	return best;
 }
+
+// Arrow keys turn a camera about what it looks at, + and - bring it closer. False for any other key.
+function turnCamera(camera, target, key) {
+	const turns = { ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1],
+		"+": [0, 0, 0.9], "-": [0, 0, 1.1] };
+	if (!turns[key]) return false;
+	const [around, over, closer] = turns[key];
+	const place = new THREE.Spherical().setFromVector3(camera.position.clone().sub(target));
+	place.theta += around;
+	place.phi += over;
+	place.radius *= closer;
+	place.makeSafe();
+	camera.position.setFromSpherical(place).add(target);
+	return true;
+}

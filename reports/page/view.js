@@ -397,17 +397,8 @@ class Live {
 		});
 	}
 
-	// Arrow keys turn the camera about what it looks at, + and - bring it closer.
 	turn(key) {
-		const turns = { ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1], "+": [0, 0, 0.9], "-": [0, 0, 1.1] };
-		if (!turns[key] || !this.camera) return false;
-		const [around, over, closer] = turns[key];
-		const place = new THREE.Spherical().setFromVector3(this.camera.position.clone().sub(this.controls.target));
-		place.theta += around;
-		place.phi += over;
-		place.radius *= closer;
-		place.makeSafe();
-		this.camera.position.setFromSpherical(place).add(this.controls.target);
+		if (!this.camera || !turnCamera(this.camera, this.controls.target, key)) return false;
 		this.controls.update();
 		return true;
 	}

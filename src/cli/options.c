@@ -1,5 +1,6 @@
 #include "asked_engines.h"
 #include "command.h"
+#include "picture_options.h"
 
 #include "names.h"
 
@@ -37,10 +38,6 @@ static ck_Status add_variable(ck_Arguments *arguments, const char *text, ck_Erro
 static ck_Status add_tolerance(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_json(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_markdown(ck_Arguments *arguments, const char *text, ck_Error *error);
-static ck_Status set_paper(ck_Arguments *arguments, const char *text, ck_Error *error);
-static ck_Status set_width(ck_Arguments *arguments, const char *text, ck_Error *error);
-static ck_Status set_color(ck_Arguments *arguments, const char *text, ck_Error *error);
-static ck_Status set_size(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Error *error);
 
 #define PLACE(member) offsetof(ck_Arguments, member)
@@ -140,16 +137,17 @@ static const Option table[] = {
     {"tolerance", "X%|METRIC=X", 0, CK_TAKES_UPDATE, OTHER, .read = add_tolerance,
      .help = "how far results may move besides their bands: a share of every metric, as 1%, or of one in its unit, as "
              "stretch_max=0.01; may be given several times"},
-    {"format", "FORMAT", 0, CK_TAKES_PAPER, OTHER, .read = set_paper, .fallback = "svg and png",
+    {"format", "FORMAT", 0, CK_TAKES_PAPER, OTHER, .read = ck_picture_paper, .fallback = "svg and png",
      .help = "pdf: each chart also as PDF, for a paper"},
-    {"width", "WIDTH", 0, CK_TAKES_PAPER, OTHER, .read = set_width, .fallback = "8.5cm",
+    {"width", "WIDTH", 0, CK_TAKES_PAPER, OTHER, .read = ck_picture_width, .fallback = "8.5cm",
      .help = "of a chart as PDF, as 8.5cm, 85mm or 3.35in"},
     {"out", "FILE", 'o', CK_TAKES_FILM, TEXT, PLACE(film), .fallback = "SCENE.mp4",
      .help = "the film: FILE.mp4 or FILE.gif"},
-    {"color", "QUANTITY", 0, CK_TAKES_FILM, OTHER, .read = set_color, .fallback = "strain",
+    {"color", "QUANTITY", 0, CK_TAKES_FILM, OTHER, .read = ck_picture_color, .fallback = "strain",
      .help = "strain, distance (to the truth), speed or engine"},
     {"fps", "N", 0, CK_TAKES_FILM, COUNT, PLACE(film_fps), 1, 120, .fallback = "30", .help = "frames a second"},
-    {"size", "WxH", 0, CK_TAKES_FILM, OTHER, .read = set_size, .fallback = "1280x720", .help = "px, even numbers"},
+    {"size", "WxH", 0, CK_TAKES_FILM, OTHER, .read = ck_picture_size, .fallback = "1280x720",
+     .help = "px, even numbers"},
     {"port", "N", 0, CK_TAKES_VIEW, COUNT, PLACE(port), 1, 65535, .fallback = "one that is free",
      .help = "where the page is served, on 127.0.0.1"},
     {"speed", "X", 0, CK_TAKES_VIEW, NUMBER, PLACE(speed), 0, 100, .fallback = "1",
@@ -331,51 +329,6 @@ static ck_Status set_form(ck_Arguments *arguments, ck_AnswerForm form, ck_Error 
     if (arguments->answer.form && arguments->answer.form != form)
         return ck_fail(error, CK_BAD_INPUT, "--json and --markdown: an answer has one form; give one of them");
     arguments->answer.form = form;
-    return CK_OK;
-}
-
-static ck_Status set_paper(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    arguments->is_pdf = !strcmp(text, "pdf");
-    return arguments->is_pdf ? CK_OK
-                             : ck_fail(error, CK_BAD_INPUT, "--format %s: is none of a chart; it may be pdf", text);
-}
-
-static ck_Status set_width(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    static const struct {
-        const char *name;
-        double cm;
-    } units[] = {{"cm", 1}, {"mm", 0.1}, {"in", 2.54}};
-    char *unit;
-    const double number = strtod(text, &unit);
-    arguments->has_width = true;
-    arguments->paper_width = 0;
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (unit != text && !strcmp(unit, units[i].name)) arguments->paper_width = number * units[i].cm;
-    const bool is_fit = arguments->paper_width >= 3 && arguments->paper_width <= 100;
-    return is_fit ? CK_OK
-                  : ck_fail(error, CK_BAD_INPUT,
-                            "--width %s: must be a width from 3cm to 100cm, as 8.5cm, 85mm or 3.35in", text);
-}
-
-static ck_Status set_color(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    static const char *const colors[] = {"strain", "distance", "speed", "engine"};
-    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
-        if (!strcmp(text, colors[i])) arguments->color = colors[i];
-    return arguments->color
-               ? CK_OK
-               : ck_fail(error, CK_BAD_INPUT, "--color %s: must be strain, distance, speed or engine", text);
-}
-
-// Even numbers, for a video's colours are of two by two pixels.
-static ck_Status set_size(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    char *middle, *end;
-    const long width = strtol(text, &middle, 10), height = *middle == 'x' ? strtol(middle + 1, &end, 10) : 0;
-    const bool is_whole = *middle == 'x' && !*end;
-    if (!is_whole || width < 200 || height < 200 || width > 3840 || height > 2160 || width % 2 || height % 2)
-        return ck_fail(error, CK_BAD_INPUT,
-                       "--size %s: must be two even numbers from 200x200 to 3840x2160, as 1280x720", text);
-    arguments->film_width = (int)width;
-    arguments->film_height = (int)height;
     return CK_OK;
 }
 

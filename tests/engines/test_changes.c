@@ -5,7 +5,6 @@
 #include "segment.h"
 #include "vector.h"
 
-#include <unistd.h>
 
 static void run(ck_Run *of, const ck_Model *model, const ck_Engine *engine) {
     const ck_Limits limits = ck_limits_default();
@@ -107,18 +106,11 @@ static void test_clocks(void **state) {
 
 static void expect_refusal(const char *changes, const char *wanted) {
     char text[500];
-    Fixture fixture;
-    ck_Error error = {0};
     snprintf(text, sizeof text,
              "name: bad\nrope: {particles: 3, spacing: 0.5, mass: 1}\nsprings: {stiffness: 1}\n%s"
              "time: {duration: 1, fps: 60}\n",
              changes);
-    char *path = fixture_file(text);
-    assert_int_equal(fixture_open(&fixture, path, &error), CK_BAD_INPUT);
-    if (!strstr(error.message, wanted)) fail_msg("said: %s", error.message);
-    fixture_free(&fixture);
-    unlink(path);
-    free(path);
+    fixture_expect_refusal(text, wanted);
 }
 
 static void test_refuses(void **state) {
