@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 struct ck_ExplicitCloth;
+struct ck_ExplicitList;
 struct ck_ProjectedCloth;
 struct ck_Wave;
 
@@ -28,6 +29,12 @@ typedef struct ck_NearSurface {
 // Which particles of a row may come to touch one within a substep; see near_loop.c.
 typedef int ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
                        double *near, int *vectors);
+// The same over a chunk of a list of springs; see list_loop.h.
+typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk);
+typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, bool advances);
+typedef void ck_ListPull(const struct ck_ExplicitList *list, int chunk);
+typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
+                          double *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionWave(const struct ck_ProjectedCloth *cloth, const struct ck_Wave *wave);
 // Products with a sum each, as many as it can a second; returns how many there were.
@@ -40,6 +47,10 @@ typedef struct ck_Loops {
     ck_ExplicitStart *explicit_start;
     ck_ExplicitRow *explicit_row;
     ck_NearRow *near_row;
+    ck_ListStart *list_start;
+    ck_ListChunk *list_chunk;
+    ck_ListPull *list_pull;
+    ck_NearChunk *near_chunk;
     ck_ProjectionWave *projection_wave;
     ck_Peak *peak;
 } ck_Loops;

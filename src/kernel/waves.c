@@ -6,6 +6,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 // Looks at another thread's progress before this one gives way, some 10 µs.
 #define LOOKS 20000
@@ -14,8 +15,8 @@
 
 // Waves of a thread's part at least, times the reach.
 #define LEAST_PART 3
-// Bytes that the second cache of most cores holds.
-#define SECOND_CACHE (1 << 20)
+// Bytes that a core's second cache holds at least.
+#define LEAST_SECOND_CACHE (1 << 19)
 
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
@@ -119,15 +120,47 @@ void ck_waves_destroy(ck_Waves *waves) {
     free(waves);
 }
 
+static size_t second_cache(void) {
+#ifdef _SC_LEVEL2_CACHE_SIZE
+    const long bytes = sysconf(_SC_LEVEL2_CACHE_SIZE);
+#else
+    const long bytes = 0;
+#endif
+    return bytes > LEAST_SECOND_CACHE ? (size_t)bytes : LEAST_SECOND_CACHE;
+}
+
 int ck_waves_depth(const ck_Waves *waves, long passes, int rows, int lag, size_t row_bytes) {
-    if (rows * row_bytes <= SECOND_CACHE) return 1;
-    long depth = SECOND_CACHE / 2 / (long)(lag * row_bytes), most = passes;
+    const size_t cache = second_cache();
+    if (rows * row_bytes <= cache) return 1;
+    long depth = (long)(cache / 2 / (lag * row_bytes)), most = passes;
     if (waves) {
         const int parted = rows / (LEAST_PART * lag * waves->threads);
         most = parted < passes / 8 ? parted : passes / 8;
     }
     if (depth > most) depth = most;
     return depth > 1 ? (int)depth : 1;
+}
+
+typedef struct Interleaved {
+    const ck_Passes *passes;
+    int depth;
+} Interleaved;
+
+static void run_wave(void *state, long block, int wave) {
+    const Interleaved *interleaved = state;
+    const ck_Passes *passes = interleaved->passes;
+    for (int i = 0; i < interleaved->depth; i++) {
+        const long pass = block * interleaved->depth + i;
+        const int row = wave - passes->reach * i;
+        if (pass < passes->passes && row >= 0 && row < passes->rows) passes->run(passes->state, pass, row);
+    }
+}
+
+void ck_passes_run(ck_Waves *waves, const ck_Passes *passes) {
+    const int reach = passes->reach,
+              depth = ck_waves_depth(waves, passes->passes, passes->rows, reach, passes->row_bytes);
+    ck_waves_run(waves, &(ck_WaveWork){run_wave, &(Interleaved){passes, depth}, (passes->passes + depth - 1) / depth,
+                                       passes->rows + reach * (depth - 1), reach * depth});
 }
 
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {

@@ -30,6 +30,18 @@ void ck_waves_destroy(ck_Waves *waves);
 // there are to be eight blocks, as the others wait while the first is in its first one, and parts enough for all.
 int ck_waves_depth(const ck_Waves *waves, long passes, int rows, int lag, size_t row_bytes);
 
+// Passes over rows, of which several run interleaved where a cloth is beyond the second cache.
+//   reach  rows below its own that a pass finds as the pass before left them
+typedef struct ck_Passes {
+    void (*run)(void *state, long pass, int row);
+    void *state;
+    long passes;
+    int rows, reach;
+    size_t row_bytes;
+} ck_Passes;
+
+void ck_passes_run(ck_Waves *waves, const ck_Passes *passes);
+
 // Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads. Cost: some atomic
 // stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1
 // ms.

@@ -1,6 +1,7 @@
 #include "native.h"
 
 #include "constraint_kernel.h"
+#include "explicit.h"
 #include "loops.h"
 #include "path.h"
 #include "vector.h"
@@ -58,6 +59,7 @@ void ck_native_destroy(void *state) {
     ck_rigid_contact_destroy(native->rigid);
     ck_waves_destroy(native->waves);
     ck_projection_destroy(native->cloth);
+    ck_explicit_destroy(native->springs);
     free(native->compliance);
     free(native->gamma);
     free(native->bending);

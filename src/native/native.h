@@ -30,6 +30,7 @@ typedef struct ck_Native {
     ck_RigidContact *rigid;          // NULL without rigid bodies
     struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
+    struct ck_Explicit *springs;     // of native-verlet alone
 } ck_Native;
 
 // The number of the natives' own setting: the most doubles of an instruction.

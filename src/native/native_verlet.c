@@ -1,9 +1,9 @@
 // Damped springs stepped by velocity Verlet with predicted velocity: the accuracy workhorse.
 #include "engine.h"
+#include "explicit.h"
 #include "hinges.h"
 #include "native.h"
 #include "path.h"
-#include "spring_kernel.h"
 #include "time_scale.h"
 #include "vector.h"
 #include "verlet_contact.h"
@@ -12,46 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Adds the acceleration by springs. hangs: a constant of the caller, so that springs which also push are not asked.
-static inline void pull(const ck_Native *native, double *acceleration, const bool hangs) {
-    const ck_Model *model = native->model;
-    const double *position = native->position, *velocity = native->other_velocity;
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        double d[3], v[3];
-        ck_subtract(d, position + 3 * spring->b, position + 3 * spring->a);
-        ck_subtract(v, velocity + 3 * spring->b, velocity + 3 * spring->a);
-        double length = ck_length(d);
-        if (!(length > 0)) continue; // coincident particles have no direction to push in
-        if (hangs && spring->pulls_only && length < spring->rest) continue;
-        double tension = spring->stiffness * (length - spring->rest) + spring->damping * ck_dot(v, d) / length;
-        ck_add_scaled(acceleration + 3 * spring->a, tension / length * native->inverse_mass[spring->a], d);
-        ck_add_scaled(acceleration + 3 * spring->b, -tension / length * native->inverse_mass[spring->b], d);
-    }
-}
-
-// Acceleration of all particles from springs, hinges, air, field and drag.
-//   position, velocity  [3*n] in, m and m/s
-//   acceleration        [3*n] out, m/s²
-// Cost: one pass over springs, one over particles. Cannot fail.
+// Acceleration of all particles from springs, hinges, air, field and drag, [3*n] m/s², where they are with the velocity
+// that is predicted. Cost: one pass over springs, one over particles. Cannot fail.
 static void accelerate(const ck_Native *native, double *acceleration) {
     const ck_Model *model = native->model;
     const double *velocity = native->other_velocity;
-    memset(acceleration, 0, 3 * sizeof(double) * (size_t)model->particle_count);
-    if (model->terms & CK_TERM_PULL_ONLY)
-        pull(native, acceleration, true);
-    else
-        pull(native, acceleration, false);
+    ck_explicit_pull(native->springs, native->position, velocity, acceleration);
     if (model->hinge_count) ck_hinges_add_force(model, native->position, 1, native->inverse_mass, acceleration);
     if (model->wind.face_count)
         ck_wind_add_force(model, native->position, velocity, native->inverse_mass, acceleration);
-    for (int i = 0; i < model->particle_count; i++) {
-        if (native->inverse_mass[i] == 0) continue;
-        double field[3];
-        ck_model_field(model, i, field);
-        ck_add_scaled(acceleration + 3 * i, 1, field);
-        ck_add_scaled(acceleration + 3 * i, -model->drag, velocity + 3 * i);
-    }
 }
 
 // Where a pin's speed jumps between two substeps, dampers pull otherwise from then on: so the order stays two.
@@ -175,37 +144,42 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
     return CK_OK;
 }
 
-// A regular cloth runs in rows; native then holds its state at the end of a frame.
+// Where nothing but springs, field, drag and colliders move the body, its state is the kernel's and native holds it at
+// the end of a frame; else native steps it and has the springs' part from there.
 typedef struct Verlet {
     ck_Native *native;
-    ck_ExplicitCloth *cloth;   // NULL: the list of springs
-    ck_VerletContact *contact; // of a cloth in rows; NULL without colliders
+    ck_VerletContact *contact; // of a body in the kernel; NULL without colliders
+    bool is_whole;             // all of it is the kernel's
 } Verlet;
 
 static void destroy(void *state) {
     Verlet *verlet = state;
-    ck_explicit_destroy(verlet->cloth);
     ck_verlet_contact_destroy(verlet->contact);
     ck_native_destroy(verlet->native);
     free(verlet);
 }
 
+static ck_ExplicitSetup setup_of(const ck_Native *native) {
+    return (ck_ExplicitSetup){ck_native_loops(native), native->model,    native->dt,
+                              native->position,        native->velocity, native->inverse_mass};
+}
+
 // The first acceleration belongs to the start, or the first step would lose half a dt of it.
-static ck_Status start(Verlet *verlet, ck_Error *error) {
+static void start(Verlet *verlet) {
     ck_Native *native = verlet->native;
-    const ck_Model *model = native->model;
-    ck_RowSprings springs;
-    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
-    accelerate(native, native->acceleration);
-    ck_explicit_destroy(verlet->cloth);
-    verlet->cloth = NULL;
-    if (!ck_rows_fit(model, &springs)) return CK_OK;
-    if (!verlet->contact) {
-        ck_Status status = ck_verlet_contact_create(&verlet->contact, native, error);
-        if (status) return status;
-    }
-    return ck_explicit_create(&verlet->cloth, ck_native_loops(native), model, &springs, native->dt, native->position,
-                              native->velocity, native->acceleration, native->inverse_mass, error);
+    memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
+    if (!verlet->is_whole) accelerate(native, native->acceleration);
+}
+
+static ck_Status lay_out(Verlet *verlet, ck_Error *error) {
+    ck_Native *native = verlet->native;
+    const ck_ExplicitSetup setup = setup_of(native);
+    verlet->is_whole = ck_explicit_fits(native->model);
+    ck_Status status = verlet->is_whole ? ck_explicit_create(&native->springs, &setup, error)
+                                        : ck_explicit_create_list(&native->springs, &setup, error);
+    if (!status && verlet->is_whole) status = ck_verlet_contact_create(&verlet->contact, native, error);
+    if (!status) start(verlet);
+    return status;
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
@@ -215,7 +189,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     Verlet *verlet = calloc(1, sizeof *verlet);
     if (!verlet) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     status = ck_native_create(&verlet->native, model, used, error);
-    if (!status) status = start(verlet, error);
+    if (!status) status = lay_out(verlet, error);
     if (status)
         destroy(verlet);
     else
@@ -226,21 +200,22 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
 static void release(void *state, int particle) {
     Verlet *verlet = state;
     ck_native_release(verlet->native, particle);
-    // without memory for rows the list of springs goes on
-    start(verlet, NULL);
+    const ck_ExplicitSetup setup = setup_of(verlet->native);
+    ck_explicit_place(verlet->native->springs, &setup);
+    start(verlet);
 }
 
 static ck_StepResult step(void *state) {
     Verlet *verlet = state;
     ck_Native *native = verlet->native;
     ck_native_start_frame(native);
-    if (verlet->cloth && native->contact) {
-        for (uint32_t i = 0; i < native->substeps; i++)
-            ck_verlet_contact_substep(verlet->contact, native, verlet->cloth);
-        ck_explicit_read(verlet->cloth, native->position, native->velocity);
-    } else if (verlet->cloth) {
-        ck_explicit_step(verlet->cloth, native->substeps, native->waves);
-        ck_explicit_read(verlet->cloth, native->position, native->velocity);
+    if (verlet->is_whole) {
+        if (native->contact)
+            for (uint32_t i = 0; i < native->substeps; i++)
+                ck_verlet_contact_substep(verlet->contact, native, native->springs);
+        else
+            ck_explicit_step(native->springs, native->substeps, native->waves);
+        ck_explicit_read(native->springs, native->position, native->velocity);
     } else {
         void (*const advance)(ck_Native *) = native->rigid ? substep_with_bodies : substep;
         for (uint32_t i = 0; i < native->substeps; i++) advance(native);

@@ -67,7 +67,7 @@ static void set_surfaces(ck_NearSurface *surfaces, const ck_Contact *contact) {
     }
 }
 
-void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_ExplicitCloth *cloth) {
+void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Explicit *cloth) {
     ck_Contact *contact = native->contact;
     const ck_Model *model = native->model;
     const double dt = native->dt;

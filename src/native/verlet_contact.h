@@ -3,8 +3,8 @@
 #ifndef CK_VERLET_CONTACT_H
 #define CK_VERLET_CONTACT_H
 
+#include "explicit.h"
 #include "native.h"
-#include "spring_kernel.h"
 
 typedef struct ck_VerletContact ck_VerletContact;
 
@@ -14,6 +14,6 @@ ck_Status ck_verlet_contact_create(ck_VerletContact **contact, const ck_Native *
 void ck_verlet_contact_destroy(ck_VerletContact *contact);
 
 // One substep of cloth, which holds the state of native.
-void ck_verlet_contact_substep(ck_VerletContact *contact, ck_Native *native, ck_ExplicitCloth *cloth);
+void ck_verlet_contact_substep(ck_VerletContact *contact, ck_Native *native, ck_Explicit *cloth);
 
 #endif

@@ -2,9 +2,10 @@
 #include "fixture.h"
 
 #include "constraint_kernel.h"
+#include "explicit.h"
 #include "lanes.h"
-#include "spring_kernel.h"
 #include "springs.h"
+#include "statistics.h"
 #include "sweep_order.h"
 #include "vector.h"
 
@@ -39,31 +40,21 @@ static void plain_step(const ck_Model *model, double dt, double *x, double *v, d
 
 // A root good to 4e-14 of forces of up to 10 N on 6 g and more: over the 0.1 s of 100 substeps 3e-13 m and what that
 // grows by; sums in another order, fused or not, are less.
-static void compare_explicit(const char *size, const char *springs, const char *terms) {
-    char text[600];
-    snprintf(text, sizeof text,
-             "name: kernel\ncloth: {%s, spacing: 0.1, mass: 1, down: [0, 0, 1]}\nsprings: {%s}\n%s"
-             "pins: [top_left, 0:2]\nnoise: {amplitude: 0.01, seed: 5}\nvelocity: [0.3, -0.5, 0.2]\nforce: [0, 0.01, "
-             "0]\ngravity: [0, -9.81, 1]\ntime: {duration: 1, step: 0.01}\n",
-             size, springs, terms);
-    Fixture fixture;
-    fixture_load(&fixture, text);
-    const ck_Model *model = &fixture.model;
+static void compare_explicit(const char *text, const ck_Model *model, bool is_list) {
     size_t count = 3 * (size_t)model->particle_count;
     double *state = calloc(4 * count, sizeof *state), *weight = malloc(count * sizeof *weight), dt = 1e-3;
     double *x = state, *v = state + count, *a = state + 2 * count, *predicted = state + 3 * count;
-    ck_RowSprings row_springs;
     memcpy(x, model->position, count * sizeof *x);
     memcpy(v, model->velocity, count * sizeof *v);
     ck_springs_accelerate(model, x, v, a);
     for (int i = 0; i < model->particle_count; i++) weight[i] = ck_model_inverse_mass(model, i);
-    assert_true(ck_rows_fit(model, &row_springs));
     double *results[MOST_LOOPS];
     for (int kind = 0; ck_loops_at(kind); kind++) {
-        ck_ExplicitCloth *cloth;
+        ck_Explicit *cloth;
         results[kind] = calloc(2 * count, sizeof *x);
-        assert_int_equal(ck_explicit_create(&cloth, ck_loops_at(kind), model, &row_springs, dt, x, v, a, weight, NULL),
-                         CK_OK);
+        const ck_ExplicitSetup setup = {ck_loops_at(kind), model, dt, x, v, weight};
+        assert_int_equal(
+            is_list ? ck_explicit_create_list(&cloth, &setup, NULL) : ck_explicit_create(&cloth, &setup, NULL), CK_OK);
         // in two calls, as two frames are
         ck_explicit_step(cloth, 60, NULL);
         ck_explicit_step(cloth, 40, NULL);
@@ -77,10 +68,25 @@ static void compare_explicit(const char *size, const char *springs, const char *
     assert_true(moved > 1e-2);
     free(state);
     free(weight);
+}
+
+static void compare_cloth(const char *size, const char *springs, const char *terms) {
+    char text[600];
+    snprintf(text, sizeof text,
+             "name: kernel\ncloth: {%s, spacing: 0.1, mass: 1, down: [0, 0, 1]}\nsprings: {%s}\n%s"
+             "pins: [top_left, 0:2]\nnoise: {amplitude: 0.01, seed: 5}\nvelocity: [0.3, -0.5, 0.2]\nforce: [0, 0.01, "
+             "0]\ngravity: [0, -9.81, 1]\ntime: {duration: 1, step: 0.01}\n",
+             size, springs, terms);
+    Fixture fixture;
+    ck_RowSprings row_springs;
+    fixture_load(&fixture, text);
+    assert_true(ck_rows_fit(&fixture.model, &row_springs));
+    compare_explicit(text, &fixture.model, false);
+    compare_explicit(text, &fixture.model, true);
     fixture_free(&fixture);
 }
 
-// Every set of terms, on rows shorter and longer than a vector and a cloth of few rows.
+// Every set of terms, on rows shorter and longer than a vector and a cloth of few rows; in rows and as a list.
 static void test_explicit(void **state) {
     (void)state;
     static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 6, columns: 16",
@@ -90,9 +96,54 @@ static void test_explicit(void **state) {
         "stiffness: 100, shear: 50, bend: 20", "stiffness: 100, bend: 20, damping: 0.05"};
     for (size_t size = 0; size < sizeof sizes / sizeof *sizes; size++)
         for (size_t i = 0; i < sizeof springs / sizeof *springs; i++) {
-            compare_explicit(sizes[size], springs[i], "");
-            compare_explicit(sizes[size], springs[i], "drag: 2\n");
+            compare_cloth(sizes[size], springs[i], "");
+            compare_cloth(sizes[size], springs[i], "drag: 2\n");
         }
+}
+
+// What rows are not for: springs that each have values of their own, join any two particles, or hang slack.
+static void scramble(ck_Model *model, uint64_t seed) {
+    ck_Random random = ck_random_seed(seed);
+    for (int i = 0; i < model->spring_count; i++) {
+        ck_Spring *spring = &model->springs[i];
+        spring->a = (int)(ck_random_unit(&random) * model->particle_count);
+        spring->b = (int)(ck_random_unit(&random) * model->particle_count);
+        if (spring->b == spring->a) spring->b = (spring->a + 1) % model->particle_count;
+        spring->stiffness *= 0.5 + 0.5 * ck_random_unit(&random);
+        spring->damping *= ck_random_unit(&random);
+        spring->rest = 0.3 * ck_random_unit(&random);
+        spring->pulls_only = seed % 2 && ck_random_unit(&random) < 0.5;
+    }
+    for (int i = 0; i < model->particle_count; i++) model->mass[i] *= 1 + ck_random_unit(&random);
+    if (seed % 2) model->terms |= CK_TERM_PULL_ONLY;
+}
+
+// Networks at random, in parts, with lone particles, with one that all are joined to, and with one spring in all.
+static void test_list(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed < 41; seed++) {
+        char text[500];
+        Fixture fixture;
+        snprintf(text, sizeof text,
+                 "name: list\ncloth: {rows: %d, columns: 9, spacing: 0.1, mass: 5}\nsprings: {stiffness: 40, damping: "
+                 "0.05}\npins: [top_left, 0:2]\ndrag: %d\nnoise: {amplitude: 0.02, seed: 5}\nvelocity: [0.3, -0.5, "
+                 "0.2]\ngravity: [0, -9.81, 1]\ntime: {duration: 1, step: 0.01}\n",
+                 seed % 4 ? 30 : 3, (int)(seed % 3));
+        fixture_load(&fixture, text);
+        ck_Model *model = &fixture.model;
+        const int springs = model->spring_count;
+        scramble(model, seed);
+        if (seed % 5 == 0) model->spring_count = 1;
+        if (seed % 5 == 1) model->spring_count /= 4;
+        for (int i = 0; i < 40 && seed % 5 == 2; i++) {
+            model->springs[i].a = 7;
+            model->springs[i].b = 8 + i % (model->particle_count - 8);
+            model->springs[i].stiffness = 1;
+        }
+        compare_explicit(text, model, true);
+        model->spring_count = springs;
+        fixture_free(&fixture);
+    }
 }
 
 // One spring by its formula, as constraint_kernel.h gives it. Tells of a long bar, and asks all whether they turned.
@@ -260,18 +311,28 @@ static double last_apart(const ck_Trajectory *one, const ck_Trajectory *other) {
     return off;
 }
 
-// The list of springs, to which a cloth goes where one spring is damped otherwise, from a start that is off by so much.
-static void run_list(ck_Trajectory *path, ck_Model *model, double off) {
-    const double damping = model->springs[7].damping;
-    model->springs[7].damping = damping * (1 + 1e-15);
+// Particle by particle, as where there is wind: this is air without density. From a start that is off by so much.
+static void run_alone(ck_Trajectory *path, ck_Model *model, double off) {
+    int face[1][3] = {{0, 1, 2}};
+    const ck_Wind wind = model->wind;
+    model->wind = (ck_Wind){.faces = face, .face_count = 1};
     model->position[150] += off;
     fixture_run(path, model, ck_engine_find("native-verlet"), &(ck_Settings){.substeps = 16}, NULL);
     model->position[150] -= off;
+    model->wind = wind;
+}
+
+// In rows, or as a list: where one spring is damped otherwise.
+static void run_whole(ck_Trajectory *path, ck_Model *model, int lanes, bool is_list) {
+    const double damping = model->springs[7].damping;
+    const ck_Settings settings = {.substeps = 16, .own = {lanes}, .own_set = 1};
+    if (is_list) model->springs[7].damping = damping * (1 + 1e-15);
+    fixture_run(path, model, ck_engine_find("native-verlet"), &settings, NULL);
     model->springs[7].damping = damping;
 }
 
-// Contact in rows, all particles in vectors and those near a collider one by one, against the list of springs: off by
-// what rounding makes of a start there. Friction, which holds or not, makes some 1e-5 m of 1e-14.
+// Contact in rows and lists, all particles in vectors and those near a collider one by one, against all one by one: off
+// by what rounding makes of a start there. Friction, which holds or not, makes some 1e-5 m of 1e-14.
 static void test_contact(void **state) {
     (void)state;
     static const char *const colliders[] = {
@@ -285,7 +346,6 @@ static void test_contact(void **state) {
     for (size_t i = 0; i < sizeof colliders / sizeof *colliders; i++) {
         char text[800];
         Fixture fixture;
-        double *first = NULL;
         snprintf(text, sizeof text,
                  "name: drape\ncloth: {rows: 9, columns: 11, spacing: 0.08, mass: 0.2, down: [0, 0.02, 1]}\nsprings: "
                  "{stiffness: 200, shear: 80, damping: 0.02}\npins: [top_left]\ndrag: 0.5\ngravity: [0, -9.81, 0]\n"
@@ -293,26 +353,28 @@ static void test_contact(void **state) {
                  colliders[i]);
         fixture_load(&fixture, text);
         const size_t count = 3 * (size_t)fixture.model.particle_count;
-        ck_Trajectory list, nudged;
-        run_list(&list, &fixture.model, 0);
-        run_list(&nudged, &fixture.model, 1e-14);
-        const double sensitivity = last_apart(&list, &nudged);
+        ck_Trajectory alone, nudged;
+        run_alone(&alone, &fixture.model, 0);
+        run_alone(&nudged, &fixture.model, 1e-14);
+        const double sensitivity = last_apart(&alone, &nudged);
         ck_trajectory_free(&nudged);
-        for (int kind = 0; ck_loops_at(kind); kind++) {
-            ck_Trajectory rows;
-            const ck_Settings settings = {.substeps = 16, .own = {ck_loops_at(kind)->lanes}, .own_set = 1};
-            fixture_run(&rows, &fixture.model, ck_engine_find("native-verlet"), &settings, NULL);
-            const double *end = ck_trajectory_position(&rows, fixture.model.frame_count);
-            const double off = last_apart(&rows, &list);
-            print_message("%s: %d doubles, %.1e m off, %.1e by a nudge\n", colliders[i], ck_loops_at(kind)->lanes, off,
-                          sensitivity);
-            assert_near(colliders[i], off, 0, 1e-12 + 10 * sensitivity);
-            if (first && ck_loops_at(kind)->fuses) assert_memory_equal(first, end, count * sizeof *first);
-            if (!first) first = memcpy(malloc(count * sizeof *first), end, count * sizeof *first);
-            ck_trajectory_free(&rows);
+        for (int is_list = 0; is_list < 2; is_list++) {
+            double *first = NULL;
+            for (int kind = 0; ck_loops_at(kind); kind++) {
+                ck_Trajectory whole;
+                run_whole(&whole, &fixture.model, ck_loops_at(kind)->lanes, is_list);
+                const double *end = ck_trajectory_position(&whole, fixture.model.frame_count);
+                const double off = last_apart(&whole, &alone);
+                print_message("%s %s: %d doubles, %.1e m off, %.1e by a nudge\n", is_list ? "list" : "rows",
+                              colliders[i], ck_loops_at(kind)->lanes, off, sensitivity);
+                assert_near(colliders[i], off, 0, 1e-12 + 10 * sensitivity);
+                if (first && ck_loops_at(kind)->fuses) assert_memory_equal(first, end, count * sizeof *first);
+                if (!first) first = memcpy(malloc(count * sizeof *first), end, count * sizeof *first);
+                ck_trajectory_free(&whole);
+            }
+            free(first);
         }
-        free(first);
-        ck_trajectory_free(&list);
+        ck_trajectory_free(&alone);
         fixture_free(&fixture);
     }
 }
@@ -348,6 +410,10 @@ static void check_threads(int rows, int columns, const char *springs, uint32_t s
     for (size_t engine = 0; engine < sizeof engines / sizeof *engines; engine++)
         for (uint32_t threads = 2; threads <= most; threads++)
             compare_threads(&fixture.model, ck_engine_find(engines[engine]), substeps, threads);
+    // as a list
+    fixture.model.springs[7].damping *= 2;
+    for (uint32_t threads = 2; threads <= most; threads++)
+        compare_threads(&fixture.model, ck_engine_find(engines[0]), substeps, threads);
     fixture_free(&fixture);
 }
 
@@ -430,10 +496,10 @@ static void test_fit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_projection),
-                                       cmocka_unit_test(test_far_bars), cmocka_unit_test(test_torn_bars),
-                                       cmocka_unit_test(test_contact),  cmocka_unit_test(test_threads),
-                                       cmocka_unit_test(test_depth),    cmocka_unit_test(test_vectors),
-                                       cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),      cmocka_unit_test(test_projection),
+        cmocka_unit_test(test_far_bars), cmocka_unit_test(test_torn_bars), cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_threads),  cmocka_unit_test(test_depth),     cmocka_unit_test(test_vectors),
+        cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

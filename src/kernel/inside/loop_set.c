@@ -5,6 +5,10 @@
 ck_ExplicitStart CK_LOOP(ck_explicit_start);
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
 ck_NearRow CK_LOOP(ck_near_row);
+ck_ListStart CK_LOOP(ck_list_start);
+ck_ListChunk CK_LOOP(ck_list_chunk);
+ck_ListPull CK_LOOP(ck_list_pull);
+ck_NearChunk CK_LOOP(ck_near_chunk);
 ck_ProjectionWave CK_LOOP(ck_projection_wave);
 ck_Peak CK_LOOP(ck_peak);
 
@@ -16,6 +20,10 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .explicit_start = CK_LOOP(ck_explicit_start),
     .explicit_row = CK_LOOP(ck_explicit_row),
     .near_row = CK_LOOP(ck_near_row),
+    .list_start = CK_LOOP(ck_list_start),
+    .list_chunk = CK_LOOP(ck_list_chunk),
+    .list_pull = CK_LOOP(ck_list_pull),
+    .near_chunk = CK_LOOP(ck_near_chunk),
     .projection_wave = CK_LOOP(ck_projection_wave),
     .peak = CK_LOOP(ck_peak),
 };

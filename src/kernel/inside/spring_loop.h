@@ -2,10 +2,11 @@
 #ifndef CK_SPRING_LOOP_H
 #define CK_SPRING_LOOP_H
 
-#include "loops.h"
+#include "explicit_kind.h"
 #include "rows.h"
 
-struct ck_ExplicitCloth {
+typedef struct ck_ExplicitCloth {
+    ck_Explicit base; // see explicit_kind.h
     const ck_Loops *loops;
     ck_Rows rows;
     ck_RowSprings springs;
@@ -13,7 +14,6 @@ struct ck_ExplicitCloth {
     double dt, resistance, weight[3]; // s; N·s/m and N on each particle, of drag and of what pulls on all
     int terms;
     uint32_t substeps; // of this call
-    int depth;         // passes over the rows that run interleaved
     // tiles; v, between substeps of a call, is half a substep ahead
     double *x, *v, *predicted;
     double *a;    // acceleration at the end of a call, else the springs' forces from above so far
@@ -22,7 +22,7 @@ struct ck_ExplicitCloth {
     double *near;      // of a row: which particles may touch
     int *near_vectors; // and in which of its vectors there are such
     double *state, *pairs;
-};
+} ck_ExplicitCloth;
 
 // What a scene does not have is not in its loop.
 enum { CK_ROW_DAMPED = 1, CK_ROW_DRAGGED = 2, CK_ROW_SHEARED = 4, CK_ROW_BENT = 8 };

@@ -1,5 +1,5 @@
-#include "spring_kernel.h"
-
+// The layout of explicit.h for regular cloths.
+#include "explicit_kind.h"
 #include "spring_loop.h"
 
 #include <stdlib.h>
@@ -7,7 +7,8 @@
 
 // Pass 0 is the start of the first substep, each other one ends a substep and starts the next. The first row has no
 // springs from above; nor has the second, of those that bend.
-static void run_row(ck_ExplicitCloth *cloth, long pass, int row) {
+static void run_row(void *state, long pass, int row) {
+    ck_ExplicitCloth *cloth = state;
     if (pass == 0) {
         cloth->loops->explicit_start(cloth, row);
         return;
@@ -16,39 +17,27 @@ static void run_row(ck_ExplicitCloth *cloth, long pass, int row) {
     cloth->loops->explicit_row(cloth, row, pass < cloth->substeps);
 }
 
-// A row reads those below it as the pass before left them.
-static int reach_of(const ck_ExplicitCloth *cloth) {
-    return cloth->terms & CK_ROW_BENT ? 2 : 1;
-}
-
-static void run_wave(void *state, long block, int wave) {
-    ck_ExplicitCloth *cloth = state;
-    for (int i = 0; i < cloth->depth; i++) {
-        const long pass = block * cloth->depth + i;
-        const int row = wave - reach_of(cloth) * i;
-        if (pass <= cloth->substeps && row >= 0 && row < cloth->rows.rows) run_row(cloth, pass, row);
-    }
-}
-
-void ck_explicit_step(ck_ExplicitCloth *cloth, uint32_t substeps, ck_Waves *waves) {
-    const long passes = substeps + 1L;
-    const int reach = reach_of(cloth);
+static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     cloth->substeps = substeps;
-    cloth->depth = ck_waves_depth(waves, passes, cloth->rows.rows, reach, 12 * sizeof(double) * cloth->rows.stride);
-    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (passes + cloth->depth - 1) / cloth->depth,
-                                       cloth->rows.rows + reach * (cloth->depth - 1), reach * cloth->depth});
+    // a row reads those below it as the pass before left them
+    ck_passes_run(waves, &(ck_Passes){run_row, cloth, substeps + 1L, cloth->rows.rows,
+                                      cloth->terms & CK_ROW_BENT ? 2 : 1, 12 * sizeof(double) * cloth->rows.stride});
 }
 
-void ck_explicit_drift(ck_ExplicitCloth *cloth) {
+static void drift(ck_Explicit *body) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 0, row);
 }
 
-void ck_explicit_kick(ck_ExplicitCloth *cloth) {
+static void kick(ck_Explicit *body) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     cloth->substeps = 1;
     for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 1, row);
 }
 
-int ck_explicit_find_near(const ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int count, int *particles) {
+static int find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles) {
+    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
     const ck_Rows *rows = &cloth->rows;
     int found = 0;
     for (int row = 0; row < rows->rows; row++) {
@@ -68,8 +57,8 @@ static long tile_of(const ck_ExplicitCloth *cloth, int particle) {
     return ck_rows_at(&cloth->rows, particle / cloth->rows.columns, particle % cloth->rows.columns).tile;
 }
 
-void ck_explicit_take(const ck_ExplicitCloth *cloth, int particle, double *position, double *velocity,
-                      double *acceleration) {
+static void take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration) {
+    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
     const long tile = tile_of(cloth, particle);
     for (int axis = 0; axis < 3; axis++) {
         position[axis] = cloth->x[tile + axis * CK_STRIPE];
@@ -78,8 +67,9 @@ void ck_explicit_take(const ck_ExplicitCloth *cloth, int particle, double *posit
     }
 }
 
-void ck_explicit_put(const ck_ExplicitCloth *cloth, int particle, const double *velocity, const double *position,
-                     const double *predicted) {
+static void put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
+                const double *predicted) {
+    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
     const long tile = tile_of(cloth, particle);
     for (int axis = 0; axis < 3; axis++) {
         cloth->v[tile + axis * CK_STRIPE] = velocity[axis];
@@ -88,13 +78,14 @@ void ck_explicit_put(const ck_ExplicitCloth *cloth, int particle, const double *
     }
 }
 
-void ck_explicit_read(const ck_ExplicitCloth *cloth, double *position, double *velocity) {
+static void read_state(const ck_Explicit *body, double *position, double *velocity) {
+    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
     ck_rows_store(&cloth->rows, position, cloth->x);
     ck_rows_store(&cloth->rows, velocity, cloth->v);
 }
 
-void ck_explicit_destroy(ck_ExplicitCloth *cloth) {
-    if (!cloth) return;
+static void destroy(ck_Explicit *body) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     free(cloth->state);
     free(cloth->pairs);
     free(cloth->near_vectors);
@@ -108,25 +99,35 @@ static int terms_of(const ck_Model *model, const ck_RowSprings *springs) {
     return terms & CK_ROW_BENT ? terms | CK_ROW_DAMPED | CK_ROW_DRAGGED : terms;
 }
 
-ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, const ck_Model *model,
-                             const ck_RowSprings *springs, double dt, const double *position, const double *velocity,
-                             const double *acceleration, const double *inverse_mass, ck_Error *error) {
+// Where it is, and the acceleration there: what a pass gives that goes nowhere.
+static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    const ck_Model *model = setup->model;
+    ck_rows_load(&cloth->rows, cloth->x, setup->position);
+    ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity);
+    for (int i = 0; i < model->particle_count; i++)
+        cloth->gain[ck_rows_at(&cloth->rows, i / model->columns, i % model->columns).single] =
+            setup->dt * setup->inverse_mass[i];
+    kick(body);
+    ck_rows_load(&cloth->rows, cloth->v, setup->velocity);
+}
+
+static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Error *error) {
+    const ck_Model *model = setup->model;
     ck_ExplicitCloth *cloth = calloc(1, sizeof *cloth);
     if (!cloth) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    *cloth = (ck_ExplicitCloth){.loops = loops,
-                                .rows = ck_rows_of(model),
-                                .springs = *springs,
-                                .dt = dt,
-                                .resistance = model->drag * model->mass[0]};
-    cloth->terms = terms_of(model, springs);
+    *cloth = (ck_ExplicitCloth){
+        .loops = setup->loops, .rows = ck_rows_of(model), .dt = setup->dt, .resistance = model->drag * model->mass[0]};
+    ck_rows_fit(model, &cloth->springs);
+    cloth->terms = terms_of(model, &cloth->springs);
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
-        cloth->slack[kind] = springs->stiffness[kind] * springs->rest[kind];
+        cloth->slack[kind] = cloth->springs.stiffness[kind] * cloth->springs.rest[kind];
     const ck_Rows row = {.size = (size_t)cloth->rows.stride};
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
     cloth->pairs = ck_rows_allocate(&row, 3);
     cloth->near_vectors = malloc((size_t)cloth->rows.span * sizeof *cloth->near_vectors);
     if (!cloth->state || !cloth->pairs || !cloth->near_vectors) {
-        ck_explicit_destroy(cloth);
+        destroy(&cloth->base);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
     const size_t size = cloth->rows.size;
@@ -140,13 +141,11 @@ ck_Status ck_explicit_create(ck_ExplicitCloth **out, const ck_Loops *loops, cons
     cloth->near = cloth->pairs + 2 * row.size;
     ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
     ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
-    ck_rows_load(&cloth->rows, cloth->x, position);
-    ck_rows_load(&cloth->rows, cloth->v, velocity);
-    ck_rows_load(&cloth->rows, cloth->a, acceleration);
     ck_model_field(model, 0, cloth->weight);
     for (int axis = 0; axis < 3; axis++) cloth->weight[axis] *= model->mass[0];
-    for (int i = 0; i < model->particle_count; i++)
-        cloth->gain[ck_rows_at(&cloth->rows, i / model->columns, i % model->columns).single] = dt * inverse_mass[i];
-    *out = cloth;
+    place(&cloth->base, setup);
+    *out = &cloth->base;
     return CK_OK;
 }
+
+const ck_ExplicitKind ck_explicit_rows = {create, place, destroy, step, drift, kick, find_near, take, put, read_state};

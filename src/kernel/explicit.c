@@ -1,0 +1,62 @@
+#include "explicit.h"
+
+#include "explicit_kind.h"
+
+bool ck_explicit_fits(const ck_Model *model) {
+    return model->spring_count && !model->hinge_count && !model->wind.face_count && !model->driven_count &&
+           !model->rigid_count && !(model->jitter > 0);
+}
+
+static ck_Status create(ck_Explicit **body, const ck_ExplicitKind *kind, const ck_ExplicitSetup *setup,
+                        ck_Error *error) {
+    ck_Status status = kind->create(body, setup, error);
+    if (!status) (*body)->kind = kind;
+    return status;
+}
+
+ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error) {
+    ck_RowSprings springs;
+    const bool is_regular = ck_rows_fit(setup->model, &springs);
+    return create(body, is_regular ? &ck_explicit_rows : &ck_explicit_list, setup, error);
+}
+
+ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error) {
+    return create(body, &ck_explicit_list, setup, error);
+}
+
+void ck_explicit_place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    body->kind->place(body, setup);
+}
+
+void ck_explicit_destroy(ck_Explicit *body) {
+    if (body) body->kind->destroy(body);
+}
+
+void ck_explicit_step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
+    body->kind->step(body, substeps, waves);
+}
+
+void ck_explicit_drift(ck_Explicit *body) {
+    body->kind->drift(body);
+}
+
+void ck_explicit_kick(ck_Explicit *body) {
+    body->kind->kick(body);
+}
+
+int ck_explicit_find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles) {
+    return body->kind->find_near(body, surfaces, count, particles);
+}
+
+void ck_explicit_take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration) {
+    body->kind->take(body, particle, position, velocity, acceleration);
+}
+
+void ck_explicit_put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
+                     const double *predicted) {
+    body->kind->put(body, particle, velocity, position, predicted);
+}
+
+void ck_explicit_read(const ck_Explicit *body, double *position, double *velocity) {
+    body->kind->read(body, position, velocity);
+}

@@ -1,0 +1,169 @@
+// The layout of explicit.h for any body: chunks of a list of springs in the place of rows.
+#include "list_loop.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void run_chunk(void *state, long pass, int chunk) {
+    ck_ExplicitList *list = state;
+    if (pass == 0)
+        list->loops->list_start(list, chunk);
+    else
+        list->loops->list_chunk(list, chunk, pass < list->substeps);
+}
+
+static size_t chunk_bytes(const ck_SpringList *springs) {
+    const size_t places = (size_t)(springs->places / springs->chunks + 1),
+                 packs = (size_t)(springs->pack_start[springs->chunks] / springs->chunks + 1);
+    return places * (5 * CK_POINT + 2) * sizeof(double) +
+           packs * (sizeof(ck_Pack) + CK_PACK * (CK_POINT + 2) * sizeof(double));
+}
+
+static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    list->substeps = substeps;
+    ck_passes_run(waves,
+                  &(ck_Passes){run_chunk, list, substeps + 1L, list->springs.chunks, 1, chunk_bytes(&list->springs)});
+}
+
+static void drift(ck_Explicit *body) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++) run_chunk(list, 0, chunk);
+}
+
+static void kick(ck_Explicit *body) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    list->substeps = 1;
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++) run_chunk(list, 1, chunk);
+}
+
+static int find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles) {
+    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
+    int found = 0;
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++)
+        list->loops->near_chunk(list, chunk, surfaces, count, list->near);
+    for (int i = 0; i < list->springs.places; i++)
+        if (list->near[i] > 0 && list->gain[i] > 0) particles[found++] = list->springs.particle[i];
+    return found;
+}
+
+static void take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration) {
+    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
+    const long at = CK_POINT * (long)list->springs.place[particle];
+    memcpy(position, list->seats[list->springs.place[particle]].x, 3 * sizeof *position);
+    memcpy(velocity, list->v + at, 3 * sizeof *velocity);
+    memcpy(acceleration, list->a + at, 3 * sizeof *acceleration);
+}
+
+static void put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
+                const double *predicted) {
+    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
+    const long at = CK_POINT * (long)list->springs.place[particle];
+    memcpy(list->v + at, velocity, 3 * sizeof *velocity);
+    ck_Seat *seat = &list->seats[list->springs.place[particle]];
+    if (position) memcpy(seat->x, position, 3 * sizeof *position);
+    if (predicted) memcpy(seat->predicted, predicted, 3 * sizeof *predicted);
+}
+
+// From [3*n] to places that stand so many doubles apart, and back.
+static void scatter(const ck_ExplicitList *list, double *places, long apart, const double *vectors) {
+    for (int i = 0; i < list->springs.places; i++)
+        if (list->springs.particle[i] >= 0)
+            memcpy(places + apart * i, vectors + 3 * (long)list->springs.particle[i], 3 * sizeof *places);
+}
+
+static void gather(const ck_ExplicitList *list, double *vectors, const double *places, long apart) {
+    for (int i = 0; i < list->springs.places; i++)
+        if (list->springs.particle[i] >= 0)
+            memcpy(vectors + 3 * (long)list->springs.particle[i], places + apart * i, 3 * sizeof *places);
+}
+
+static void seat(const ck_ExplicitList *list, const double *position, const double *predicted) {
+    scatter(list, list->seats->x, sizeof(ck_Seat) / sizeof(double), position);
+    scatter(list, list->seats->predicted, sizeof(ck_Seat) / sizeof(double), predicted);
+}
+
+static void read_state(const ck_Explicit *body, double *position, double *velocity) {
+    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
+    gather(list, position, list->seats->x, sizeof(ck_Seat) / sizeof(double));
+    gather(list, velocity, list->v, CK_POINT);
+}
+
+static void accelerate(ck_ExplicitList *list) {
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++) list->loops->list_pull(list, chunk);
+}
+
+void ck_explicit_pull(ck_Explicit *body, const double *position, const double *velocity, double *acceleration) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    seat(list, position, velocity);
+    accelerate(list);
+    gather(list, acceleration, list->a, CK_POINT);
+}
+
+static void destroy(ck_Explicit *body) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    ck_spring_list_free(&list->springs);
+    free(list->state);
+    free(list);
+}
+
+static int terms_of(const ck_Model *model) {
+    int terms = 0;
+    for (int i = 0; i < model->spring_count; i++)
+        terms |=
+            (model->springs[i].damping > 0 ? CK_LIST_DAMPED : 0) | (model->springs[i].pulls_only ? CK_LIST_HANGS : 0);
+    return terms;
+}
+
+static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    const ck_Model *model = setup->model;
+    for (int i = 0; i < model->particle_count; i++) {
+        const int at = list->springs.place[i];
+        double *load = list->load + CK_POINT * (long)at;
+        list->gain[at] = setup->dt * setup->inverse_mass[i];
+        list->resistance[at] = model->drag * model->mass[i];
+        ck_model_field(model, i, load);
+        for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
+    }
+    seat(list, setup->position, setup->velocity);
+    scatter(list, list->v, CK_POINT, setup->velocity);
+    accelerate(list);
+}
+
+static bool allocate(ck_ExplicitList *list) {
+    const size_t places = (size_t)list->springs.places,
+                 springs = (size_t)list->springs.pack_start[list->springs.chunks] * CK_PACK + 2;
+    const size_t bytes = (places * (5 * CK_POINT + 3) + springs * CK_POINT + 8) * sizeof(double);
+    list->state = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!list->state) return false;
+    memset(list->state, 0, bytes);
+    list->seats = (ck_Seat *)list->state;
+    list->force = list->state + 2 * CK_POINT * places;
+    list->v = list->force + CK_POINT * springs;
+    list->a = list->v + CK_POINT * places;
+    list->load = list->a + CK_POINT * places;
+    list->gain = list->load + CK_POINT * places;
+    list->resistance = list->gain + places;
+    list->near = list->resistance + places;
+    return true;
+}
+
+static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Error *error) {
+    ck_ExplicitList *list = calloc(1, sizeof *list);
+    if (!list) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Status status = ck_spring_list_build(&list->springs, setup->model, error);
+    if (!status && !allocate(list)) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (status) {
+        destroy(&list->base);
+        return status;
+    }
+    list->loops = setup->loops;
+    list->dt = setup->dt;
+    list->terms = terms_of(setup->model);
+    place(&list->base, setup);
+    *out = &list->base;
+    return CK_OK;
+}
+
+const ck_ExplicitKind ck_explicit_list = {create, place, destroy, step, drift, kick, find_near, take, put, read_state};

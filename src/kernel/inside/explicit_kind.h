@@ -1,0 +1,28 @@
+// What a layout of explicit.h does: one row of functions for rows, one for lists.
+#ifndef CK_EXPLICIT_KIND_H
+#define CK_EXPLICIT_KIND_H
+
+#include "explicit.h"
+
+typedef struct ck_ExplicitKind {
+    ck_Status (*create)(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
+    void (*place)(ck_Explicit *body, const ck_ExplicitSetup *setup);
+    void (*destroy)(ck_Explicit *body);
+    void (*step)(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
+    void (*drift)(ck_Explicit *body);
+    void (*kick)(ck_Explicit *body);
+    int (*find_near)(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles);
+    void (*take)(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration);
+    void (*put)(const ck_Explicit *body, int particle, const double *velocity, const double *position,
+                const double *predicted);
+    void (*read)(const ck_Explicit *body, double *position, double *velocity);
+} ck_ExplicitKind;
+
+extern const ck_ExplicitKind ck_explicit_rows, ck_explicit_list;
+
+// The first member of every layout's own structure.
+struct ck_Explicit {
+    const ck_ExplicitKind *kind;
+};
+
+#endif
