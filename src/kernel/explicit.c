@@ -36,25 +36,20 @@ void ck_explicit_step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
     body->kind->step(body, substeps, waves);
 }
 
-void ck_explicit_drift(ck_Explicit *body) {
-    body->kind->drift(body);
-}
-
 void ck_explicit_kick(ck_Explicit *body) {
     body->kind->kick(body);
 }
 
-int ck_explicit_find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles) {
-    return body->kind->find_near(body, surfaces, count, particles);
+void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+    body->kind->drift(body, surfaces, count, near, loose);
 }
 
-void ck_explicit_take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration) {
-    body->kind->take(body, particle, position, velocity, acceleration);
+void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {
+    body->kind->take(body, near, loose);
 }
 
-void ck_explicit_put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
-                     const double *predicted) {
-    body->kind->put(body, particle, velocity, position, predicted);
+void ck_explicit_put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked) {
+    body->kind->put(body, near, loose, is_kicked);
 }
 
 void ck_explicit_read(const ck_Explicit *body, double *position, double *velocity) {

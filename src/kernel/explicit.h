@@ -39,20 +39,25 @@ void ck_explicit_destroy(ck_Explicit *body);
 // loops.h says.
 void ck_explicit_step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
 
+// A free particle, and where its layout has it.
+typedef struct ck_Near {
+    int particle;
+    long place;
+} ck_Near;
+
 // A substep in two halves, for who moves some particles otherwise in between: x and v*, and half of v; then a' and the
 // other half. Together they are ck_explicit_step with one substep.
-void ck_explicit_drift(ck_Explicit *body);
+//
+// Those that may come to touch a surface within the substep, [n] at most, by how far each can get, are noted in near
+// and their state at its start in loose, which says how many. Cost: half a pass, and some ns for each of them.
+void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
 void ck_explicit_kick(ck_Explicit *body);
 
-// Before a drift: the free particles that may come to touch a surface within the substep, [n] at most, by how far each
-// can get. Returns how many. Cost: a third of a pass, and some ns for each of them.
-int ck_explicit_find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles);
+// After a kick: their accelerations.
+void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose);
 
-// One particle's state, [3] each; and what is made of it: its velocity, and before a kick place and predicted velocity,
-// which may be NULL.
-void ck_explicit_take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration);
-void ck_explicit_put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
-                     const double *predicted);
+// What is made of them: their velocity, and before a kick place and predicted velocity, too.
+void ck_explicit_put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
 
 // [3*n] m, m/s, at the same time.
 void ck_explicit_read(const ck_Explicit *body, double *position, double *velocity);

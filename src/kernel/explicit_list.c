@@ -26,43 +26,57 @@ static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
                   &(ck_Passes){run_chunk, list, substeps + 1L, list->springs.chunks, 1, chunk_bytes(&list->springs)});
 }
 
-static void drift(ck_Explicit *body) {
-    ck_ExplicitList *list = (ck_ExplicitList *)body;
-    for (int chunk = 0; chunk < list->springs.chunks; chunk++) run_chunk(list, 0, chunk);
-}
-
 static void kick(ck_Explicit *body) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
     list->substeps = 1;
     for (int chunk = 0; chunk < list->springs.chunks; chunk++) run_chunk(list, 1, chunk);
 }
 
-static int find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles) {
-    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    int found = 0;
-    for (int chunk = 0; chunk < list->springs.chunks; chunk++)
-        list->loops->near_chunk(list, chunk, surfaces, count, list->near);
-    for (int i = 0; i < list->springs.places; i++)
-        if (list->near[i] > 0 && list->gain[i] > 0) particles[found++] = list->springs.particle[i];
+CK_INLINE void take_point(double *to, long stride, const double *from) {
+    for (int axis = 0; axis < 3; axis++) to[axis * stride] = from[axis];
+}
+
+// Those of a chunk that are marked near, and free; returns how many there are by then.
+static int take_chunk(const ck_ExplicitList *list, int chunk, ck_Near *near, const ck_Loose *loose) {
+    const int *start = list->springs.chunk_start + chunk;
+    int found = loose->count;
+    for (int quad = start[0] / CK_QUAD; quad < start[1] / CK_QUAD; quad++)
+        for (unsigned bits = list->near[quad]; bits; bits &= bits - 1) {
+            const int place = CK_QUAD * quad + __builtin_ctz(bits);
+            if (!(list->gain[place] > 0)) continue;
+            take_point(loose->x + found, loose->stride, list->seats[place].x);
+            take_point(loose->v + found, loose->stride, list->v + CK_POINT * (long)place);
+            take_point(loose->a + found, loose->stride, list->a + CK_POINT * (long)place);
+            near[found++] = (ck_Near){list->springs.particle[place], place};
+        }
     return found;
 }
 
-static void take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration) {
-    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    const long at = CK_POINT * (long)list->springs.place[particle];
-    memcpy(position, list->seats[list->springs.place[particle]].x, 3 * sizeof *position);
-    memcpy(velocity, list->v + at, 3 * sizeof *velocity);
-    memcpy(acceleration, list->a + at, 3 * sizeof *acceleration);
+static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    loose->count = 0;
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++) {
+        list->loops->near_chunk(list, chunk, surfaces, count, list->near);
+        loose->count = take_chunk(list, chunk, near, loose);
+        run_chunk(list, 0, chunk);
+    }
 }
 
-static void put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
-                const double *predicted) {
+static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    const long at = CK_POINT * (long)list->springs.place[particle];
-    memcpy(list->v + at, velocity, 3 * sizeof *velocity);
-    ck_Seat *seat = &list->seats[list->springs.place[particle]];
-    if (position) memcpy(seat->x, position, 3 * sizeof *position);
-    if (predicted) memcpy(seat->predicted, predicted, 3 * sizeof *predicted);
+    for (int i = 0; i < loose->count; i++) take_point(loose->a + i, loose->stride, list->a + CK_POINT * near[i].place);
+}
+
+static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked) {
+    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
+    for (int i = 0; i < loose->count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const long from = axis * loose->stride + i;
+            list->v[CK_POINT * near[i].place + axis] = loose->v[from];
+            if (is_kicked) continue;
+            list->seats[near[i].place].x[axis] = loose->x[from];
+            list->seats[near[i].place].predicted[axis] = loose->predicted[from];
+        }
 }
 
 // From [3*n] to places that stand so many doubles apart, and back.
@@ -145,7 +159,7 @@ static bool allocate(ck_ExplicitList *list) {
     list->load = list->a + CK_POINT * places;
     list->gain = list->load + CK_POINT * places;
     list->resistance = list->gain + places;
-    list->near = list->resistance + places;
+    list->near = (uint8_t *)(list->resistance + places);
     return true;
 }
 
@@ -166,4 +180,4 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     return CK_OK;
 }
 
-const ck_ExplicitKind ck_explicit_list = {create, place, destroy, step, drift, kick, find_near, take, put, read_state};
+const ck_ExplicitKind ck_explicit_list = {create, place, destroy, step, drift, kick, take, put, read_state};

@@ -25,56 +25,72 @@ static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
                                       cloth->terms & CK_ROW_BENT ? 2 : 1, 12 * sizeof(double) * cloth->rows.stride});
 }
 
-static void drift(ck_Explicit *body) {
-    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 0, row);
-}
-
 static void kick(ck_Explicit *body) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     cloth->substeps = 1;
     for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 1, row);
 }
 
-static int find_near(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles) {
-    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
-    const ck_Rows *rows = &cloth->rows;
-    int found = 0;
-    for (int row = 0; row < rows->rows; row++) {
-        int vectors = cloth->loops->near_row(cloth, row, surfaces, count, cloth->near, cloth->near_vectors);
-        for (int i = 0; i < vectors; i++)
-            for (int lane = 0; lane < CK_STRIPE; lane++) {
-                const int vector = cloth->near_vectors[i], column = lane * rows->span + vector;
-                const long single = ck_rows_place(rows, row, vector).single + lane;
-                if (column < rows->columns && cloth->near[vector * CK_STRIPE + lane] > 0 && cloth->gain[single] > 0)
-                    particles[found++] = row * rows->columns + column;
-            }
-    }
+// From or to a tile, whose coordinates stand a stripe apart, where those of loose ones stand so far apart.
+CK_INLINE void take_tile(double *to, long stride, const double *from) {
+    const double x = from[0], y = from[CK_STRIPE], z = from[2 * CK_STRIPE];
+    to[0] = x;
+    to[stride] = y;
+    to[2 * stride] = z;
+}
+
+CK_INLINE void put_tile(double *to, const double *from, long stride) {
+    const double x = from[0], y = from[stride], z = from[2 * stride];
+    to[0] = x;
+    to[CK_STRIPE] = y;
+    to[2 * CK_STRIPE] = z;
+}
+
+// Those of a row that are marked near, and free; returns how many there are by then.
+static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, const ck_Loose *all) {
+    const ck_ExplicitCloth cloth = *shared;
+    const ck_Loose loose = *all;
+    const ck_Place first = ck_rows_place(&cloth.rows, row, 0);
+    int found = loose.count;
+    for (int i = 0; i < cloth.rows.span; i++)
+        for (unsigned bits = cloth.near[i]; bits; bits &= bits - 1) {
+            const int lane = __builtin_ctz(bits), column = lane * cloth.rows.span + i;
+            const long place = first.tile + 3 * CK_STRIPE * i + lane;
+            if (column >= cloth.rows.columns || !(cloth.gain[first.single + CK_STRIPE * i + lane] > 0)) continue;
+            take_tile(loose.x + found, loose.stride, cloth.x + place);
+            take_tile(loose.v + found, loose.stride, cloth.v + place);
+            take_tile(loose.a + found, loose.stride, cloth.a + place);
+            near[found++] = (ck_Near){row * cloth.rows.columns + column, place};
+        }
     return found;
 }
 
-static long tile_of(const ck_ExplicitCloth *cloth, int particle) {
-    return ck_rows_at(&cloth->rows, particle / cloth->rows.columns, particle % cloth->rows.columns).tile;
-}
-
-static void take(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration) {
-    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
-    const long tile = tile_of(cloth, particle);
-    for (int axis = 0; axis < 3; axis++) {
-        position[axis] = cloth->x[tile + axis * CK_STRIPE];
-        velocity[axis] = cloth->v[tile + axis * CK_STRIPE];
-        acceleration[axis] = cloth->a[tile + axis * CK_STRIPE];
+// Row by row, so that what one step has read the next finds in the cache.
+static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    loose->count = 0;
+    for (int row = 0; row < cloth->rows.rows; row++) {
+        cloth->loops->near_row(cloth, row, surfaces, count, cloth->near);
+        loose->count = take_row(cloth, row, near, loose);
+        run_row(cloth, 0, row);
     }
 }
 
-static void put(const ck_Explicit *body, int particle, const double *velocity, const double *position,
-                const double *predicted) {
-    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
-    const long tile = tile_of(cloth, particle);
-    for (int axis = 0; axis < 3; axis++) {
-        cloth->v[tile + axis * CK_STRIPE] = velocity[axis];
-        if (position) cloth->x[tile + axis * CK_STRIPE] = position[axis];
-        if (predicted) cloth->predicted[tile + axis * CK_STRIPE] = predicted[axis];
+static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all) {
+    const double *a = ((const ck_ExplicitCloth *)body)->a;
+    const ck_Loose loose = *all;
+    for (int i = 0; i < loose.count; i++) take_tile(loose.a + i, loose.stride, a + near[i].place);
+}
+
+static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all, bool is_kicked) {
+    const ck_ExplicitCloth cloth = *(const ck_ExplicitCloth *)body;
+    const ck_Loose loose = *all;
+    for (int i = 0; i < loose.count; i++) {
+        const long place = near[i].place;
+        put_tile(cloth.v + place, loose.v + i, loose.stride);
+        if (is_kicked) continue;
+        put_tile(cloth.x + place, loose.x + i, loose.stride);
+        put_tile(cloth.predicted + place, loose.predicted + i, loose.stride);
     }
 }
 
@@ -88,7 +104,7 @@ static void destroy(ck_Explicit *body) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     free(cloth->state);
     free(cloth->pairs);
-    free(cloth->near_vectors);
+    free(cloth->near);
     free(cloth);
 }
 
@@ -124,9 +140,9 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
         cloth->slack[kind] = cloth->springs.stiffness[kind] * cloth->springs.rest[kind];
     const ck_Rows row = {.size = (size_t)cloth->rows.stride};
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
-    cloth->pairs = ck_rows_allocate(&row, 3);
-    cloth->near_vectors = malloc((size_t)cloth->rows.span * sizeof *cloth->near_vectors);
-    if (!cloth->state || !cloth->pairs || !cloth->near_vectors) {
+    cloth->pairs = ck_rows_allocate(&row, 2);
+    cloth->near = malloc((size_t)cloth->rows.span);
+    if (!cloth->state || !cloth->pairs || !cloth->near) {
         destroy(&cloth->base);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
@@ -138,7 +154,6 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     cloth->gain = cloth->state + 12 * size;
     cloth->paired = cloth->pairs;
     cloth->far_paired = cloth->pairs + row.size;
-    cloth->near = cloth->pairs + 2 * row.size;
     ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
     ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
     ck_model_field(model, 0, cloth->weight);
@@ -148,4 +163,4 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     return CK_OK;
 }
 
-const ck_ExplicitKind ck_explicit_rows = {create, place, destroy, step, drift, kick, find_near, take, put, read_state};
+const ck_ExplicitKind ck_explicit_rows = {create, place, destroy, step, drift, kick, take, put, read_state};

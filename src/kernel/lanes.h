@@ -59,8 +59,8 @@ CK_INLINE ck_Lanes ck_lanes_all(double value) {
 
 // What C has no words for. c + a·b and c − a·b are rounded once where the processor can: named outright and not left to
 // the compiler (-ffp-contract=off), whose choice depends on what else uses a product. So all that fuse give the same
-// bits. A mask is what a comparison leaves for a choice. What is no number is beyond any limit. Where each lane goes to
-// the next, the first comes from the vector before.
+// bits. A mask is what a comparison leaves for a choice; its bits, the first lane's lowest. What is no number is beyond
+// any limit. Where each lane goes to the next, the first comes from the vector before.
 #if CK_LANES == 8
 typedef __mmask8 ck_LaneMask;
 
@@ -82,6 +82,10 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
 
 CK_INLINE bool ck_lanes_any_beyond(ck_Lanes a, double limit) {
     return _mm512_cmp_pd_mask((__m512d)a, _mm512_set1_pd(limit), _CMP_NLE_UQ) != 0;
+}
+
+CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
+    return mask;
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
@@ -108,6 +112,10 @@ CK_INLINE ck_Lanes ck_lanes_choose(ck_LaneMask mask, ck_Lanes yes, ck_Lanes no) 
 
 CK_INLINE bool ck_lanes_any_beyond(ck_Lanes a, double limit) {
     return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, _mm256_set1_pd(limit), _CMP_NLE_UQ)) != 0;
+}
+
+CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
+    return (unsigned)_mm256_movemask_pd(mask);
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
@@ -140,10 +148,18 @@ CK_INLINE bool ck_lanes_any_beyond(ck_Lanes a, double limit) {
     return !(a[0] <= limit && a[1] <= limit);
 }
 
+CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
+    return (unsigned)((mask[0] & 1) | (mask[1] & 2));
+}
+
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
     return __builtin_shuffle(before, value, (ck_LaneBits){1, 2});
 }
 #endif
+
+CK_INLINE ck_Lanes ck_lanes_absolute(ck_Lanes a) {
+    return (ck_Lanes)((ck_LaneBits)a & INT64_MAX);
+}
 
 // 1/√x, good to 4e-14 and the same for the same x, in products and sums only: a vector's square root and division take
 // four times as long. The guess is off by at most 3.5 % (Lomont 2003, Fast inverse square root, with the constant for

@@ -24,17 +24,41 @@ typedef struct ck_NearSurface {
     int axis_count;
     double point[3], normal[3], axes[3][3], half[3], radius; // m
     double margin; // m, closer than which is touching, and how far it moves in a substep
+    double friction;
 } ck_NearSurface;
 
+// Particles that are followed by themselves, coordinate by coordinate: [3*stride], and [stride] of what is one number.
+typedef struct ck_Loose {
+    int count;
+    long stride;              // a multiple of CK_STRIPE
+    double *x, *v, *a;        // m, m/s, m/s²
+    double *predicted, *mass; // m/s, kg
+    double *normal;           // of the surface that is touched, out, unit: set for touch_hold, and what follows
+    double *curvature, *friction;
+    double *is_alone; // not 0: no loop takes it
+} ck_Loose;
+
+// What they may touch, none of which moves.
+typedef struct ck_Touched {
+    const ck_NearSurface *surfaces;
+    int count;
+    double dt, slack; // s; m, closer than which is touching
+} ck_Touched;
+
+// One substep of those that rest or slide on one plane or ball and go on to, and half a kick; then the other half. See
+// touch_loop.c.
+typedef void ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
+typedef void ck_TouchHold(double dt, const ck_Loose *loose);
+
 // Which particles of a row may come to touch one within a substep; see near_loop.c.
-typedef int ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
-                       double *near, int *vectors);
+typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
+                        uint8_t *near);
 // The same over a chunk of a list of springs; see list_loop.h.
 typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk);
 typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, bool advances);
 typedef void ck_ListPull(const struct ck_ExplicitList *list, int chunk);
 typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
-                          double *near);
+                          uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionWave(const struct ck_ProjectedCloth *cloth, const struct ck_Wave *wave);
 // Products with a sum each, as many as it can a second; returns how many there were.
@@ -47,6 +71,8 @@ typedef struct ck_Loops {
     ck_ExplicitStart *explicit_start;
     ck_ExplicitRow *explicit_row;
     ck_NearRow *near_row;
+    ck_TouchSlide *touch_slide;
+    ck_TouchHold *touch_hold;
     ck_ListStart *list_start;
     ck_ListChunk *list_chunk;
     ck_ListPull *list_pull;

@@ -151,14 +151,19 @@ double ck_collider_part_gap(const ck_Collider *collider, ck_Part part, const dou
     return distance - collider->radius;
 }
 
+void ck_collider_across(const ck_Collider *collider, ck_Part part, const double *along, double *across) {
+    const bool is_flat = ck_collider_is_flat(collider, part);
+    for (int axis = 0; axis < 3; axis++) across[axis] = is_flat ? 0 : along[axis];
+    for (int k = 0; k < 3 && !is_flat && collider->shape != CK_SPHERE; k++)
+        if (collider->half[k] > 0 && !part.beyond[k])
+            ck_add_scaled(across, -ck_dot(across, collider->axes[k]), collider->axes[k]);
+}
+
 double ck_collider_turn(const ck_Collider *collider, ck_Part part, const double *along) {
     if (ck_collider_is_flat(collider, part)) return 0;
     if (collider->shape == CK_SPHERE) return ck_dot(along, along) / collider->radius;
-    double across[3] = {along[0], along[1], along[2]};
-    for (int k = 0; k < 3; k++) {
-        if (!(collider->half[k] > 0) || part.beyond[k]) continue;
-        ck_add_scaled(across, -ck_dot(across, collider->axes[k]), collider->axes[k]);
-    }
+    double across[3];
+    ck_collider_across(collider, part, along, across);
     const double squared = ck_dot(across, across);
     // a sharp edge is turned by nothing
     return squared > 1e-18 * ck_dot(along, along) ? squared / collider->radius : 0;

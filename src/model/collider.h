@@ -42,6 +42,9 @@ double ck_collider_part_gap(const ck_Collider *collider, ck_Part part, const dou
 // How far a point is beyond the border of a part along an axis, m: negative inside.
 double ck_collider_part_excess(const ck_Collider *collider, int axis, const double *point);
 
+// What of a vector along a part's surface is across what is curved, [3]; 0 where it is flat.
+void ck_collider_across(const ck_Collider *collider, ck_Part part, const double *along, double *across);
+
 // What a speed along a part's surface, m/s, asks of acceleration towards it: v²/r across what is curved, m/s².
 double ck_collider_turn(const ck_Collider *collider, ck_Part part, const double *along);
 

@@ -143,7 +143,14 @@ static double pressing(const ck_Collider *collider, const double *normal, const 
     return -ck_dot(a, normal) - turn;
 }
 
-// One collider's part of ck_contact_filter; false where it is not pressed on.
+// m/s: what is slower than this lies still, but for the rounding of a collider's own speed.
+static double still_speed(double friction, double dt) {
+    return friction * dt * 1e-9;
+}
+
+// One collider's part of ck_contact_filter; false where it is not pressed on. Friction points against the way of half a
+// substep: what has just begun to slide turns into its push much faster than that, and against its first direction it
+// would be thrown to and fro. Against the push a slide keeps its direction until it stops.
 static bool hold(const ck_Collider *collider, const double *normal, double dt, const double *x, const double *v,
                  double *a) {
     double press = pressing(collider, normal, x, v, a), along[3], drive[3];
@@ -152,10 +159,12 @@ static bool hold(const ck_Collider *collider, const double *normal, double dt, c
     ck_add_scaled(a, -ck_dot(a, normal), normal);
     memcpy(drive, a, sizeof drive);
     double sliding = ck_length(along), driving = ck_length(drive), friction = collider->friction * press;
-    if (sliding > friction * dt * 1e-9)
-        ck_add_scaled(a, -friction / sliding, along);
-    else if (driving > 0)
+    if (sliding > still_speed(friction, dt)) {
+        if (ck_dot(along, drive) > 0) ck_add_scaled(along, 0.5 * dt, drive);
+        ck_add_scaled(a, -friction / ck_length(along), along);
+    } else if (driving > 0) {
         ck_add_scaled(a, -fmin(1, friction / driving), drive);
+    }
     return true;
 }
 
@@ -238,14 +247,12 @@ typedef enum Ending { GOES_ON, STOPS, TURNS } Ending;
 
 // When it stops or turns, s; INFINITY where it goes on. T = v·(q + f·cos θ)/(q² − f²) of a constant push f at an angle
 // θ to v, by v' = f·cos θ − q and v·θ' = −f·sin θ: the way turns into the push while friction q slows it down.
-//   left  what friction leaves of the acceleration
-static double stop_time(double friction, const double *v, const double *left, Ending *ending) {
+//   push  [3] m/s², along the surface;  left  what friction leaves of it
+static double stop_time(double friction, double dt, const double *v, const double *push, const double *left,
+                        Ending *ending) {
     const double speed = ck_length(v), rate = ck_dot(v, left);
-    double push[3];
     *ending = GOES_ON;
-    if (!(speed > 0)) return INFINITY;
-    memcpy(push, left, sizeof push);
-    ck_add_scaled(push, friction / speed, v);
+    if (!(speed > still_speed(friction, dt))) return INFINITY;
     const double f = ck_length(push);
     *ending = friction > f ? STOPS : rate < 0 ? TURNS : GOES_ON;
     if (*ending == STOPS) return (speed * friction + ck_dot(v, push)) / ((friction - f) * (friction + f));
@@ -258,27 +265,49 @@ static void stop_along(double *v, const double *way) {
     if (squared > 0) ck_add_scaled(v, -ck_dot(v, way) / squared, way);
 }
 
+// What an acceleration, less friction, does on the way over a curved surface that begins by leading straight on by
+// flat, m²/s²: the way turns by an angle whose tangent is flat's part across over the radius.
+static double work_over(const ck_Collider *carrier, ck_Part part, const double *normal, const double *flat,
+                        const double *a, double friction) {
+    const double radius = carrier->radius;
+    double across[3];
+    ck_collider_across(carrier, part, flat, across);
+    const double squared = ck_dot(across, across) / (radius * radius);
+    const double cosine = 1 / sqrt(1 + squared), less = squared * cosine * cosine / (1 + cosine); // 1 − cosine
+    const double length = ck_dot(flat, flat) - radius * radius * (squared - 2 * less);
+    return ck_dot(a, flat) - less * (ck_dot(a, across) + radius * ck_dot(a, normal)) - friction * sqrt(fmax(0, length));
+}
+
+// True where a way is known from how it begins: on a ball, and where it is so short that nothing else is reached. From
+// where it ends it is known to rounding, which of a creep of 1e-8 m/s would leave nothing.
+static bool is_foreseen(const ck_Collider *carrier, const double *flat) {
+    return carrier->shape == CK_SPHERE || ck_dot(flat, flat) < 1e-12 * carrier->radius * carrier->radius;
+}
+
 // Along a surface. On a ball the speed follows from the work done, which keeps its energy whatever the step.
 static void slide(const ck_Collider *carrier, double *x, double *v, const double *a, const double *left, double time,
                   Ending ending) {
-    double from[3], way[3], slid[3], normal[3], speed_squared = ck_dot(v, v), press;
-    const bool is_flat = carrier->shape == CK_PLANE ||
-                         (carrier->shape == CK_BOX && ck_collider_is_flat(carrier, ck_collider_part(carrier, x, v)));
+    double flat[3] = {0, 0, 0}, from[3], slid[3], normal[3], way[3], speed_squared = ck_dot(v, v);
+    const ck_Part part = ck_collider_part(carrier, x, v);
     memcpy(from, x, sizeof from);
     memcpy(slid, v, sizeof slid);
     ck_collider_gap(carrier, x, normal);
-    press = pressing(carrier, normal, x, v, a);
-    fly(x, v, left, time);
+    const double friction = carrier->friction * pressing(carrier, normal, x, v, a);
+    ck_add_scaled(flat, time, v);
+    ck_add_scaled(flat, 0.5 * time * time, left);
+    ck_add_scaled(x, 1, flat);
+    ck_add_scaled(v, time, left);
     if (ending == STOPS) memset(v, 0, 3 * sizeof(double));
     if (ending == TURNS) stop_along(v, slid);
-    if (is_flat) return;
+    if (ck_collider_is_flat(carrier, part)) return;
+    double worked = is_foreseen(carrier, flat) ? work_over(carrier, part, normal, flat, a, friction) : NAN;
     place(carrier, x, normal);
     ck_add_scaled(v, -ck_dot(v, normal), normal);
     if (ending != GOES_ON) return;
     ck_subtract(way, x, from);
-    speed_squared += 2 * ck_dot(a, way) - 2 * carrier->friction * press * ck_length(way);
+    if (isnan(worked)) worked = ck_dot(a, way) - friction * ck_length(way);
     double speed = ck_length(v);
-    double scale = speed > 0 ? sqrt(fmax(0, speed_squared)) / speed : 0;
+    double scale = speed > 0 ? sqrt(fmax(0, speed_squared + 2 * worked)) / speed : 0;
     for (int axis = 0; axis < 3; axis++) v[axis] *= scale;
 }
 
@@ -361,9 +390,12 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
         see(&rest, contact, seer, x, v, left, elapsed, moves);
         Ending ending = GOES_ON;
         double stop = INFINITY;
-        if (carrier && carrier->friction > 0)
-            stop = stop_time(carrier->friction * pressing(carrier, normal, seen.x, seen.v, seen.a), seen.v, rest.a,
-                             &ending);
+        if (carrier && carrier->friction > 0) {
+            double push[3];
+            ck_tangential(push, seen.a, normal);
+            stop = stop_time(carrier->friction * pressing(carrier, normal, seen.x, seen.v, seen.a), contact->dt, seen.v,
+                             push, rest.a, &ending);
+        }
         const double border = carrier ? border_time(carrier, seen.x, seen.v, rest.a) : INFINITY;
         if (stop > fmin(time, border)) ending = GOES_ON;
         time = fmin(time, fmin(stop, border));
@@ -394,7 +426,7 @@ static bool rests(const ck_Contact *contact, const double *x, const double *v, c
         const ck_Collider *collider = &contact->model->colliders[i];
         const double gap = ck_collider_gap(collider, x, out);
         if (gap > contact->slack && gap > 0.5 * contact->dt * contact->dt * sqrt(pull)) continue;
-        if (carrier || gap > contact->slack || gap < -1e-6 * contact->slack) return false;
+        if (carrier || gap > contact->slack || gap < -1e-3 * contact->slack) return false;
         carrier = collider;
         memcpy(normal, out, sizeof normal);
     }

@@ -255,7 +255,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "1",
-     .help = "threads that share a step, on regular cloths"},
+     .help = "threads that share a step, where nothing but springs, field and drag act"},
     {.name = "vectors",
      .slot = CK_OWN + CK_NATIVE_VECTORS,
      .is_whole = true,
@@ -263,7 +263,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "the processor's widest",
-     .help = "doubles of an instruction at most, on regular cloths"},
+     .help = "doubles of an instruction at most"},
     {0},
 };
 
@@ -291,7 +291,7 @@ static ck_Status create_narrow(void **state, const ck_Model *model, const ck_Set
                                ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
     if (!ck_rows_fit(model, &springs))
-        return ck_fail(error, CK_REFUSED, "is native-verlet: only regular cloths are stepped in vectors");
+        return ck_fail(error, CK_REFUSED, "is native-verlet but for the width of its vectors, which is measured on regular cloths");
     ck_Settings narrow = *wanted;
     ck_settings_set(&narrow, CK_OWN + CK_NATIVE_VECTORS, 2);
     return create(state, model, &narrow, used, ledger, error);
@@ -313,7 +313,7 @@ static const ck_Setting narrow_settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "1",
-     .help = "threads that share a step, on regular cloths"},
+     .help = "threads that share a step, where nothing but springs, field and drag act"},
     {0},
 };
 

@@ -5,29 +5,39 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A particle that is followed by itself.
-typedef struct Loose {
-    int particle;
-    double position[3], velocity[3], predicted[3];
-} Loose;
-
 struct ck_VerletContact {
     ck_NearSurface *surfaces; // [colliders]
-    int *near;                // [n]
-    Loose *loose;             // [n]
+    ck_Near *near;            // [n]
+    ck_Loose loose;           // of them
+    double *state;
 };
 
+// Room for so many and the end of a vector.
+static bool allocate(ck_VerletContact *contact, int colliders, int particles) {
+    const long stride = ((long)particles / CK_STRIPE + 1) * CK_STRIPE;
+    contact->surfaces = calloc((size_t)colliders, sizeof *contact->surfaces);
+    contact->near = malloc((size_t)particles * sizeof *contact->near);
+    contact->state = calloc(19 * (size_t)stride, sizeof *contact->state);
+    double *state = contact->state;
+    if (state)
+        contact->loose = (ck_Loose){.stride = stride,
+                                    .x = state,
+                                    .v = state + 3 * stride,
+                                    .a = state + 6 * stride,
+                                    .predicted = state + 9 * stride,
+                                    .mass = state + 12 * stride,
+                                    .is_alone = state + 13 * stride,
+                                    .curvature = state + 14 * stride,
+                                    .friction = state + 15 * stride,
+                                    .normal = state + 16 * stride};
+    return contact->surfaces && contact->near && state;
+}
+
 ck_Status ck_verlet_contact_create(ck_VerletContact **out, const ck_Native *native, ck_Error *error) {
-    const size_t count = (size_t)native->model->particle_count;
     *out = NULL;
     if (!native->contact) return CK_OK;
     ck_VerletContact *contact = calloc(1, sizeof *contact);
-    if (contact) {
-        contact->surfaces = calloc((size_t)native->model->collider_count, sizeof *contact->surfaces);
-        contact->near = malloc(count * sizeof *contact->near);
-        contact->loose = malloc(count * sizeof *contact->loose);
-    }
-    if (!contact || !contact->surfaces || !contact->near || !contact->loose) {
+    if (!contact || !allocate(contact, native->model->collider_count, native->model->particle_count)) {
         ck_verlet_contact_destroy(contact);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
@@ -39,7 +49,7 @@ void ck_verlet_contact_destroy(ck_VerletContact *contact) {
     if (!contact) return;
     free(contact->surfaces);
     free(contact->near);
-    free(contact->loose);
+    free(contact->state);
     free(contact);
 }
 
@@ -48,8 +58,10 @@ static void set_surfaces(ck_NearSurface *surfaces, const ck_Contact *contact) {
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
         ck_NearSurface *surface = &surfaces[i];
-        *surface = (ck_NearSurface){
-            .is_plane = collider->shape == CK_PLANE, .radius = collider->radius, .margin = 2 * contact->slack};
+        *surface = (ck_NearSurface){.is_plane = collider->shape == CK_PLANE,
+                                    .radius = collider->radius,
+                                    .margin = 2 * contact->slack,
+                                    .friction = collider->friction};
         memcpy(surface->point, collider->point, sizeof surface->point);
         memcpy(surface->normal, collider->normal, sizeof surface->normal);
         for (int k = 0; k < 3; k++) {
@@ -67,39 +79,70 @@ static void set_surfaces(ck_NearSurface *surfaces, const ck_Contact *contact) {
     }
 }
 
-void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Explicit *cloth) {
+static void take_one(double *one, const double *many, long stride, int i) {
+    for (int axis = 0; axis < 3; axis++) one[axis] = many[axis * stride + i];
+}
+
+static void put_one(double *many, long stride, int i, const double *one) {
+    for (int axis = 0; axis < 3; axis++) many[axis * stride + i] = one[axis];
+}
+
+// One by one, those that something happens to.
+static void follow_alone(const ck_Loose *loose, ck_Contact *contact) {
+    const long stride = loose->stride;
+    for (int i = 0; i < loose->count; i++) {
+        double x[3], v[3], a[3], left[3];
+        if (!(loose->is_alone[i] > 0)) continue;
+        take_one(x, loose->x, stride, i);
+        take_one(v, loose->v, stride, i);
+        take_one(a, loose->a, stride, i);
+        ck_contact_advance(contact, loose->mass[i], x, v, a);
+        put_one(loose->x, stride, i, x);
+        put_one(loose->predicted, stride, i, v);
+        ck_contact_filter(contact, x, v, a, left);
+        ck_add_scaled(v, -0.5 * contact->dt, left);
+        put_one(loose->v, stride, i, v);
+    }
+}
+
+static void kick_alone(const ck_Loose *loose, const ck_Contact *contact) {
+    const long stride = loose->stride;
+    for (int i = 0; i < loose->count; i++) {
+        double x[3], v[3], predicted[3], a[3], left[3];
+        if (!(loose->is_alone[i] > 0)) continue;
+        take_one(x, loose->x, stride, i);
+        take_one(v, loose->v, stride, i);
+        take_one(predicted, loose->predicted, stride, i);
+        take_one(a, loose->a, stride, i);
+        ck_contact_filter(contact, x, predicted, a, left);
+        ck_add_scaled(v, 0.5 * contact->dt, left);
+        put_one(loose->v, stride, i, v);
+    }
+}
+
+void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Explicit *body) {
     ck_Contact *contact = native->contact;
     const ck_Model *model = native->model;
-    const double dt = native->dt;
-    double left[3];
-    if (contact->motion) ck_contact_follow(contact, (double)native->done * dt);
+    const ck_Loops *loops = ck_native_loops(native);
+    ck_Loose *loose = &own->loose;
+    if (contact->motion) ck_contact_follow(contact, (double)native->done * native->dt);
     if (contact->motion || !native->done) set_surfaces(own->surfaces, contact);
-    const int count = ck_explicit_find_near(cloth, own->surfaces, model->collider_count, own->near);
-    for (int i = 0; i < count; i++) {
-        Loose *loose = &own->loose[i];
-        loose->particle = own->near[i];
-        ck_explicit_take(cloth, loose->particle, loose->position, loose->velocity, loose->predicted);
+    const ck_Touched touch = {own->surfaces, model->collider_count, native->dt, contact->slack};
+    ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose);
+    for (int i = 0; i < loose->count; i++) {
+        loose->mass[i] = model->mass[own->near[i].particle];
+        loose->is_alone[i] = 1;
     }
-    ck_explicit_drift(cloth);
-    contact->elapsed = dt;
-    for (int i = 0; i < count; i++) {
-        Loose *loose = &own->loose[i];
-        double *x = loose->position, *v = loose->velocity, a[3];
-        memcpy(a, loose->predicted, sizeof a);
-        ck_contact_advance(contact, model->mass[loose->particle], x, v, a);
-        memcpy(loose->predicted, v, sizeof loose->predicted);
-        ck_contact_filter(contact, x, v, a, left);
-        ck_add_scaled(v, -0.5 * dt, left);
-        ck_explicit_put(cloth, loose->particle, v, x, loose->predicted);
-    }
+    // what fills the last vector up weighs nothing
+    for (long i = loose->count; i % CK_STRIPE; i++) loose->mass[i] = 0;
+    contact->elapsed = native->dt;
+    if (!contact->motion) loops->touch_slide(&touch, loose, contact->impulse);
+    follow_alone(loose, contact);
+    ck_explicit_put(body, own->near, loose, false);
     native->done++;
-    ck_explicit_kick(cloth);
-    for (int i = 0; i < count; i++) {
-        Loose *loose = &own->loose[i];
-        double x[3], v[3], a[3];
-        ck_explicit_take(cloth, loose->particle, x, v, a);
-        ck_contact_filter(contact, x, loose->predicted, a, left);
-        ck_add_scaled(loose->velocity, 0.5 * dt, left);
-        ck_explicit_put(cloth, loose->particle, loose->velocity, NULL, NULL);
-    }
+    ck_explicit_kick(body);
+    ck_explicit_take(body, own->near, loose);
+    if (!contact->motion) loops->touch_hold(native->dt, loose);
+    kick_alone(loose, contact);
+    ck_explicit_put(body, own->near, loose, true);
 }

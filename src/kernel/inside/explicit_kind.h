@@ -9,12 +9,10 @@ typedef struct ck_ExplicitKind {
     void (*place)(ck_Explicit *body, const ck_ExplicitSetup *setup);
     void (*destroy)(ck_Explicit *body);
     void (*step)(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
-    void (*drift)(ck_Explicit *body);
+    void (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
     void (*kick)(ck_Explicit *body);
-    int (*find_near)(const ck_Explicit *body, const ck_NearSurface *surfaces, int count, int *particles);
-    void (*take)(const ck_Explicit *body, int particle, double *position, double *velocity, double *acceleration);
-    void (*put)(const ck_Explicit *body, int particle, const double *velocity, const double *position,
-                const double *predicted);
+    void (*take)(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose);
+    void (*put)(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
     void (*read)(const ck_Explicit *body, double *position, double *velocity);
 } ck_ExplicitKind;
 

@@ -160,21 +160,25 @@ void CK_LOOP(ck_list_start)(const struct ck_ExplicitList *list, int chunk) {
     }
 }
 
-// Into near, of each place of a chunk: 1 where what is there may come to touch a surface within the substep, else 0.
+// Into near, of each four places of a chunk: a bit for each that may come to touch a surface within the substep.
 ck_NearChunk CK_LOOP(ck_near_chunk);
 void CK_LOOP(ck_near_chunk)(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
-                            double *near) {
-    const int end = list->springs.chunk_start[chunk + 1];
-    for (int place = list->springs.chunk_start[chunk]; place < end; place += CK_LANES) {
+                            uint8_t *near) {
+    const int *start = list->springs.chunk_start + chunk;
+    for (int quad = start[0] / CK_QUAD; quad < start[1] / CK_QUAD; quad++) near[quad] = 0;
+    for (int place = start[0]; place < start[1]; place += CK_LANES) {
         ck_Point x[CK_LANES], v[CK_LANES], a[CK_LANES];
+        unsigned bits = 0;
         for (int lane = 0; lane < CK_LANES; lane++) {
-            const long at = place + lane < end ? place + lane : place;
+            const long at = place + lane < start[1] ? place + lane : place;
             x[lane] = ck_point_load(list->seats[at].x);
             v[lane] = ck_point_load(list->v + CK_POINT * at);
             a[lane] = ck_point_load(list->a + CK_POINT * at);
         }
-        const ck_Lanes way = ck_near_way(ck_points_across(v), ck_points_across(a), list->dt);
-        const ck_Lanes is_near = ck_near_any(ck_points_across(x), way, surfaces, count);
-        for (int lane = 0; lane < CK_LANES && place + lane < end; lane++) near[place + lane] = is_near[lane];
+        for (int k = 0; k < count; k++)
+            bits |= ck_near_bits(ck_points_across(x), ck_points_across(v), ck_points_across(a), list->dt, &surfaces[k],
+                                 surfaces[k].is_plane ? CK_NEAR_PLANE : CK_NEAR_SOLID);
+        for (int lane = 0; lane < CK_LANES && place + lane < start[1]; lane++)
+            near[(place + lane) / CK_QUAD] |= (uint8_t)((bits >> lane & 1) << (place + lane) % CK_QUAD);
     }
 }

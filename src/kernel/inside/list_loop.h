@@ -28,7 +28,7 @@ typedef struct ck_ExplicitList {
     double *force;      // a point a spring: on its end a
     double *gain;       // [places] m/s a substep for each N: dt/m where free, else 0
     double *resistance; // [places] N·s/m of drag
-    double *near;       // [places] above 0: it may touch
+    uint8_t *near;      // [places/4] a bit for each of a quad that may touch
     double *state;
 } ck_ExplicitList;
 

@@ -5,6 +5,8 @@
 ck_ExplicitStart CK_LOOP(ck_explicit_start);
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
 ck_NearRow CK_LOOP(ck_near_row);
+ck_TouchSlide CK_LOOP(ck_touch_slide);
+ck_TouchHold CK_LOOP(ck_touch_hold);
 ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_ListPull CK_LOOP(ck_list_pull);
@@ -20,6 +22,8 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .explicit_start = CK_LOOP(ck_explicit_start),
     .explicit_row = CK_LOOP(ck_explicit_row),
     .near_row = CK_LOOP(ck_near_row),
+    .touch_slide = CK_LOOP(ck_touch_slide),
+    .touch_hold = CK_LOOP(ck_touch_hold),
     .list_start = CK_LOOP(ck_list_start),
     .list_chunk = CK_LOOP(ck_list_chunk),
     .list_pull = CK_LOOP(ck_list_pull),

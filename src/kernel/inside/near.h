@@ -6,6 +6,13 @@
 #include "lanes.h"
 #include "loops.h"
 
+// A solid has a core with axes, a ball a point.
+typedef enum ck_NearShape { CK_NEAR_PLANE, CK_NEAR_BALL, CK_NEAR_SOLID } ck_NearShape;
+
+CK_INLINE ck_NearShape ck_near_shape(const ck_NearSurface *surface) {
+    return surface->is_plane ? CK_NEAR_PLANE : surface->axis_count ? CK_NEAR_SOLID : CK_NEAR_BALL;
+}
+
 // How far particles go in a substep at most, |v|·dt + |a|·dt²/2, and some rounding.
 CK_INLINE ck_Lanes ck_near_way(ck_Lanes3 v, ck_Lanes3 a, double substep) {
     const ck_Lanes squared[] = {ck_lanes3_dot(v, v), ck_lanes3_dot(a, a)};
@@ -15,9 +22,9 @@ CK_INLINE ck_Lanes ck_near_way(ck_Lanes3 v, ck_Lanes3 a, double substep) {
     return dt * (squared[0] * inverse[0]) + 0.5 * dt * dt * (squared[1] * inverse[1]);
 }
 
-CK_INLINE ck_Lanes ck_near_gap(const ck_NearSurface *surface, ck_Lanes3 x) {
+// From a surface's core, or a plane's point.
+CK_INLINE ck_Lanes3 ck_near_out(const ck_NearSurface *surface, ck_Lanes3 x) {
     ck_Lanes3 from = ck_lanes3_subtract(x, ck_lanes3_all(surface->point)), out = from;
-    if (surface->is_plane) return ck_lanes3_dot(from, ck_lanes3_all(surface->normal));
     for (int k = 0; k < surface->axis_count; k++) {
         const ck_Lanes half = ck_lanes_all(surface->half[k]);
         const ck_Lanes3 axis = ck_lanes3_all(surface->axes[k]);
@@ -25,19 +32,35 @@ CK_INLINE ck_Lanes ck_near_gap(const ck_NearSurface *surface, ck_Lanes3 x) {
         const ck_Lanes low = ck_lanes_choose(ck_lanes_less(along, -half), -half, along);
         out = ck_lanes3_subtract_scaled(out, ck_lanes_choose(ck_lanes_less(half, low), half, low), axis);
     }
+    return out;
+}
+
+CK_INLINE ck_Lanes ck_near_gap(const ck_NearSurface *surface, ck_Lanes3 x) {
+    const ck_Lanes3 out = ck_near_out(surface, x);
+    if (surface->is_plane) return ck_lanes3_dot(out, ck_lanes3_all(surface->normal));
     const ck_Lanes squared = ck_lanes3_dot(out, out);
     ck_Lanes inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
     return squared * inverse - surface->radius;
 }
 
-// 1 where a surface is within the way, else 0. What is no number is near.
-CK_INLINE ck_Lanes ck_near_any(ck_Lanes3 x, ck_Lanes way, const ck_NearSurface *surfaces, int count) {
-    ck_Lanes is_near = ck_lanes_all(0);
-    for (int k = 0; k < count; k++)
-        is_near = ck_lanes_choose(ck_lanes_less(way + surfaces[k].margin, ck_near_gap(&surfaces[k], x)), is_near,
-                                  ck_lanes_all(1));
-    return is_near;
+CK_INLINE ck_Lanes ck_near_sum(ck_Lanes3 a) {
+    return ck_lanes_absolute(a.x) + ck_lanes_absolute(a.y) + ck_lanes_absolute(a.z);
+}
+
+// A bit for each that a surface may be in reach of, by a way that is at most √3 as long as ck_near_way: without a root,
+// as most are far from all. What is no number is near.
+//   shape  a constant of the caller: what the surface is
+CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_NearSurface *surface,
+                                const ck_NearShape shape) {
+    const double dt = substep * (1 + 1e-9);
+    const ck_Lanes reach = dt * ck_near_sum(v) + 0.5 * dt * dt * ck_near_sum(a) + (surface->margin + surface->radius);
+    const ck_Lanes3 out =
+        shape == CK_NEAR_SOLID ? ck_near_out(surface, x) : ck_lanes3_subtract(x, ck_lanes3_all(surface->point));
+    const ck_LaneMask is_far = shape == CK_NEAR_PLANE
+                                   ? ck_lanes_less(reach, ck_lanes3_dot(out, ck_lanes3_all(surface->normal)))
+                                   : ck_lanes_less(reach * reach, ck_lanes3_dot(out, out));
+    return ~ck_lanes_bits(is_far) & ((1u << CK_LANES) - 1);
 }
 
 #endif

@@ -2,23 +2,32 @@
 #include "near.h"
 #include "spring_loop.h"
 
-// Into near, of each particle of a row: 1 where it may come to touch a surface within the substep, else 0. Returns how
-// many vectors of a stripe have such; their numbers in the row go to vectors.
-ck_NearRow CK_LOOP(ck_near_row);
-int CK_LOOP(ck_near_row)(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
-                         double *near, int *vectors) {
-    int found = 0;
+CK_INLINE void look(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surface, uint8_t *near,
+                    const ck_NearShape shape) {
     for (int i = 0; i < cloth->rows.span; i++) {
         const long tile = ck_rows_place(&cloth->rows, row, i).tile;
-        bool is_any = false;
+        unsigned bits = 0;
         for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
-            const ck_Lanes way =
-                ck_near_way(ck_lanes3_load(cloth->v + tile + lane), ck_lanes3_load(cloth->a + tile + lane), cloth->dt);
-            const ck_Lanes is_near = ck_near_any(ck_lanes3_load(cloth->x + tile + lane), way, surfaces, count);
-            ck_lanes_store(near + i * CK_STRIPE + lane, is_near);
-            is_any |= ck_lanes_any_beyond(is_near, 0.5);
+            const double *x = cloth->x + tile + lane, *v = cloth->v + tile + lane, *a = cloth->a + tile + lane;
+            bits |= ck_near_bits(ck_lanes3_load(x), ck_lanes3_load(v), ck_lanes3_load(a), cloth->dt, surface, shape)
+                    << lane;
         }
-        if (is_any) vectors[found++] = i;
+        near[i] |= (uint8_t)bits;
     }
-    return found;
+}
+
+// Into near, of each vector of a row: a bit for each particle that may come to touch a surface within the substep.
+ck_NearRow CK_LOOP(ck_near_row);
+void CK_LOOP(ck_near_row)(const struct ck_ExplicitCloth *shared, int row, const ck_NearSurface *surfaces, int count,
+                          uint8_t *near) {
+    const struct ck_ExplicitCloth cloth = *shared;
+    for (int i = 0; i < cloth.rows.span; i++) near[i] = 0;
+    for (int k = 0; k < count; k++) {
+        const ck_NearSurface surface = surfaces[k];
+        switch (ck_near_shape(&surface)) {
+        case CK_NEAR_PLANE: look(&cloth, row, &surface, near, CK_NEAR_PLANE); break;
+        case CK_NEAR_BALL: look(&cloth, row, &surface, near, CK_NEAR_BALL); break;
+        default: look(&cloth, row, &surface, near, CK_NEAR_SOLID); break;
+        }
+    }
 }

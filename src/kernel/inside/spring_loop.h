@@ -19,8 +19,7 @@ typedef struct ck_ExplicitCloth {
     double *a;    // acceleration at the end of a call, else the springs' forces from above so far
     double *gain; // m/s a substep for each N: dt/m where free, else 0
     double *paired, *far_paired;
-    double *near;      // of a row: which particles may touch
-    int *near_vectors; // and in which of its vectors there are such
+    uint8_t *near; // [span] of a row: a bit for each of a vector that may touch
     double *state, *pairs;
 } ck_ExplicitCloth;
 

@@ -1,0 +1,261 @@
+// Compiled once for each kind of vectors; see loops.h. The formulas are those of native/contact.c, for what is most of
+// contact: particles that touch one plane or ball that stays, with nothing else in reach, and rest or slide on it from
+// start to end of a substep. All others are left to be followed one by one.
+#include "near.h"
+
+// The surface that each lane touches; of a plane the curvature is 0.
+typedef struct Surface {
+    ck_Lanes3 point, normal;
+    ck_Lanes radius, curvature, friction, gap;
+} Surface;
+
+CK_INLINE ck_Lanes3 load(const double *from, const ck_Loose *loose, int at) {
+    return (ck_Lanes3){ck_lanes_load(from + at), ck_lanes_load(from + loose->stride + at),
+                       ck_lanes_load(from + 2 * loose->stride + at)};
+}
+
+CK_INLINE void store(double *to, const ck_Loose *loose, int at, ck_Lanes3 value) {
+    ck_lanes_store(to + at, value.x);
+    ck_lanes_store(to + loose->stride + at, value.y);
+    ck_lanes_store(to + 2 * loose->stride + at, value.z);
+}
+
+CK_INLINE ck_Lanes inverse_length(ck_Lanes squared) {
+    ck_Lanes inverse;
+    ck_lanes_inverse_root(&inverse, &squared, 1);
+    return inverse;
+}
+
+// The gap to a ball, and the normal there: good to rounding by a further step of Newton's, or what lies on a large ball
+// would be seen in it.
+CK_INLINE ck_Lanes ball_gap(ck_Lanes3 point, ck_Lanes radius, ck_Lanes3 x, ck_Lanes3 *normal) {
+    const ck_Lanes3 out = ck_lanes3_subtract(x, point);
+    const ck_Lanes squared = ck_lanes3_dot(out, out), guess = inverse_length(squared);
+    const ck_Lanes off = ck_lanes_minus(ck_lanes_all(1), squared * guess, guess);
+    const ck_Lanes inverse = ck_lanes_plus(guess, 0.5 * guess, off);
+    *normal = ck_lanes3_scale(inverse, out);
+    return squared * inverse - radius;
+}
+
+CK_INLINE Surface choose(ck_LaneMask mask, const Surface *yes, const Surface *no) {
+    return (Surface){
+        ck_lanes3_choose(mask, yes->point, no->point),      ck_lanes3_choose(mask, yes->normal, no->normal),
+        ck_lanes_choose(mask, yes->radius, no->radius),     ck_lanes_choose(mask, yes->curvature, no->curvature),
+        ck_lanes_choose(mask, yes->friction, no->friction), ck_lanes_choose(mask, yes->gap, no->gap)};
+}
+
+// The one that is touched at x. Into alone: not 0 where none or several are within a way, or it is another shape.
+CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes way, ck_Lanes *alone) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1), slack = ck_lanes_all(touch->slack);
+    Surface found = {.gap = one};
+    ck_Lanes in_reach = none, touched = none;
+    for (int k = 0; k < touch->count; k++) {
+        const ck_NearSurface *surface = &touch->surfaces[k];
+        Surface each = {.point = ck_lanes3_all(surface->point),
+                        .radius = ck_lanes_all(surface->radius),
+                        .friction = ck_lanes_all(surface->friction)};
+        if (surface->axis_count) {
+            each.gap = ck_near_gap(surface, x);
+        } else if (surface->is_plane) {
+            each.normal = ck_lanes3_all(surface->normal);
+            each.gap = ck_lanes3_dot(ck_lanes3_subtract(x, each.point), each.normal);
+        } else {
+            each.curvature = ck_lanes_all(1 / surface->radius);
+            each.gap = ball_gap(each.point, each.radius, x, &each.normal);
+        }
+        const ck_LaneMask is_near = ck_lanes_less(each.gap, way + surface->margin);
+        const ck_LaneMask is_touched = ck_lanes_less(each.gap, slack);
+        in_reach += ck_lanes_choose(is_near, one, none);
+        touched += ck_lanes_choose(is_touched, surface->axis_count ? none : one, none);
+        found = choose(is_touched, &each, &found);
+    }
+    *alone = (in_reach - 1) * (in_reach - 1) + (touched - 1) * (touched - 1);
+    return found;
+}
+
+CK_INLINE ck_Lanes3 along_surface(ck_Lanes3 vector, ck_Lanes3 normal) {
+    return ck_lanes3_subtract_scaled(vector, ck_lanes3_dot(vector, normal), normal);
+}
+
+// What a surface leaves of an acceleration.
+typedef struct Held {
+    ck_Lanes3 left, push; // m/s²; push: along the surface, without friction
+    ck_Lanes press;       // how hard it is pressed on, per mass: above 0 where it is
+    ck_LaneMask holds;    // all of the push
+} Held;
+
+CK_INLINE Held hold(const Surface *surface, ck_Lanes3 normal, ck_Lanes3 v, ck_Lanes3 a, double dt) {
+    const ck_Lanes none = {0};
+    const ck_Lanes3 along = along_surface(v, normal), push = along_surface(a, normal);
+    const ck_Lanes press = -ck_lanes3_dot(a, normal) - surface->curvature * ck_lanes3_dot(v, v);
+    const ck_Lanes friction = surface->friction * press;
+    const ck_LaneMask agrees = ck_lanes_less(none, ck_lanes3_dot(along, push));
+    const ck_Lanes3 way = ck_lanes3_add_scaled(along, ck_lanes_choose(agrees, ck_lanes_all(0.5 * dt), none), push);
+    const ck_Lanes squared[] = {ck_lanes3_dot(along, along), ck_lanes3_dot(push, push), ck_lanes3_dot(way, way)};
+    ck_Lanes inverse[3];
+    ck_lanes_inverse_root(inverse, squared, 3);
+    // without friction a push is never held
+    const ck_LaneMask holds = ck_lanes_less(squared[1], friction * friction);
+    const ck_Lanes share = ck_lanes_choose(holds, ck_lanes_all(1), friction * inverse[1]);
+    const ck_LaneMask slides = ck_lanes_less(friction * (dt * 1e-9), squared[0] * inverse[0]);
+    const ck_Lanes3 left = ck_lanes3_choose(slides, ck_lanes3_subtract_scaled(push, friction * inverse[2], way),
+                                            ck_lanes3_subtract_scaled(push, share, push));
+    return (Held){left, push, press, holds};
+}
+
+CK_INLINE ck_LaneMask leaves_fast(ck_Lanes3 v, ck_Lanes3 normal) {
+    const ck_Lanes out = ck_lanes3_dot(v, normal);
+    return ck_lanes_less(1e-24 * ck_lanes3_dot(v, v),
+                         ck_lanes_choose(ck_lanes_less(out, (ck_Lanes){0}), (ck_Lanes){0}, out * out));
+}
+
+// As hold, where the surface is not left, faster than rounding; else all of it.
+CK_INLINE ck_Lanes3 filter(const Surface *surface, ck_Lanes3 normal, ck_Lanes3 v, ck_Lanes3 a, double dt) {
+    const Held held = hold(surface, normal, v, a, dt);
+    const ck_LaneMask leaves = leaves_fast(v, normal), is_pressed = ck_lanes_less((ck_Lanes){0}, held.press);
+    return ck_lanes3_choose(leaves, a, ck_lanes3_choose(is_pressed, held.left, a));
+}
+
+// Not 0 where friction stops or turns a slide within the substep; see stop_time.
+CK_INLINE ck_Lanes ends_within(ck_Lanes friction, ck_Lanes3 v, const Held *held, double dt) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
+    const ck_Lanes squared = ck_lanes3_dot(v, v), inverse = inverse_length(squared);
+    const ck_Lanes pushed = ck_lanes3_dot(held->push, held->push), most = dt * (friction * friction - pushed);
+    const ck_Lanes stops =
+        ck_lanes_choose(ck_lanes_less(friction * (squared * inverse) + ck_lanes3_dot(v, held->push), most), one, none);
+    const ck_Lanes turns = ck_lanes_choose(ck_lanes_less(squared, -dt * ck_lanes3_dot(v, held->left)), one, none);
+    const ck_Lanes ends = ck_lanes_choose(ck_lanes_less(pushed, friction * friction), stops, turns);
+    return ck_lanes_choose(ck_lanes_less(friction * (dt * 1e-9), squared * inverse), ends, none);
+}
+
+// Where a slide is after the substep; on a ball its speed follows from the work done, as work_over has it.
+CK_INLINE void slide(const Surface *surface, ck_Lanes3 *x, ck_Lanes3 *v, ck_Lanes3 a, ck_Lanes3 left, ck_Lanes press,
+                     double dt, ck_Lanes3 *normal) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1), time = ck_lanes_all(dt);
+    const ck_LaneMask is_curved = ck_lanes_less(none, surface->curvature);
+    const ck_Lanes3 flat = ck_lanes3_scale(time, ck_lanes3_add_scaled(*v, 0.5 * time, left));
+    const ck_Lanes3 to = ck_lanes3_add(*x, flat), faster = ck_lanes3_add_scaled(*v, time, left);
+    ck_Lanes3 out;
+    const ck_Lanes gap = ball_gap(surface->point, surface->radius, to, &out);
+    const ck_Lanes3 turned = along_surface(faster, out);
+    const ck_Lanes flat_squared = ck_lanes3_dot(flat, flat), turned_squared = ck_lanes3_dot(turned, turned);
+    const ck_Lanes squared = flat_squared * surface->curvature * surface->curvature;
+    const ck_Lanes cosine = inverse_length(one + squared), less = squared * cosine * cosine / (one + cosine);
+    const ck_Lanes length_squared = 2 * surface->radius * surface->radius * less;
+    const ck_Lanes pulled =
+        cosine * ck_lanes3_dot(a, flat) - less * surface->radius * ck_lanes3_dot(a, surface->normal);
+    const ck_Lanes rubbed = surface->friction * press * (length_squared * inverse_length(length_squared));
+    const ck_Lanes worked = ck_lanes3_dot(*v, *v) + 2 * (pulled - rubbed);
+    const ck_Lanes kept = ck_lanes_choose(ck_lanes_less(none, worked), worked, none);
+    const ck_Lanes scale = kept * inverse_length(kept) * inverse_length(turned_squared);
+    *x = ck_lanes3_choose(is_curved, ck_lanes3_subtract_scaled(to, gap, out), to);
+    *v = ck_lanes3_choose(is_curved, ck_lanes3_scale(scale, turned), faster);
+    *normal = ck_lanes3_choose(is_curved, out, surface->normal);
+}
+
+// Speed into the surface that is no impact is taken, and friction's share of what is along it. Not 0 into alone: an
+// impact, or it leaves.
+CK_INLINE ck_Lanes3 press_in(const Surface *surface, ck_Lanes3 v, ck_Lanes3 a, double dt, ck_Lanes *alone) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
+    const ck_Lanes inwards = -ck_lanes3_dot(v, surface->normal), pull = ck_lanes3_dot(a, surface->normal);
+    const ck_Lanes jump = ck_lanes_choose(ck_lanes_less(none, inwards), inwards, none);
+    const ck_Lanes rest = 2 * dt * ck_lanes_choose(ck_lanes_less(pull, none), -pull, pull);
+    const ck_Lanes3 along = along_surface(v, surface->normal);
+    const ck_Lanes squared = ck_lanes3_dot(along, along);
+    const ck_Lanes loss = surface->friction * jump * inverse_length(squared);
+    const ck_Lanes share = ck_lanes_choose(ck_lanes_less(loss, one), loss, one);
+    const ck_Lanes3 left = ck_lanes3_subtract_scaled(ck_lanes3_add_scaled(v, jump, surface->normal), share, along);
+    *alone += ck_lanes_choose(ck_lanes_less(rest, jump), one, none);
+    *alone += ck_lanes_choose(leaves_fast(left, surface->normal), one, none);
+    return left;
+}
+
+// Some particles, a lane each.
+typedef struct Group {
+    ck_Lanes3 x, v, a; // where they are, at the start and then at the end
+    ck_Lanes3 change;  // what acceleration is left at the end
+    ck_Lanes3 normal;  // of the surface there
+    ck_Lanes alone;    // not 0: not done here
+} Group;
+
+// True where all lie still and are held: they stay to the bit. Deeper than rounding they do not lie still.
+CK_INLINE bool all_rest(const ck_Touched *touch, const Surface *surface, const Group *group) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
+    if (ck_lanes_any_beyond(ck_lanes3_dot(group->v, group->v), 0)) return false;
+    const Held held = hold(surface, surface->normal, group->v, group->a, touch->dt);
+    const ck_Lanes deep = ck_lanes_choose(ck_lanes_less(surface->gap, ck_lanes_all(-1e-3 * touch->slack)), one, none);
+    const ck_Lanes loose = ck_lanes_choose(ck_lanes_less(none, held.press), none, one);
+    return !ck_lanes_any_beyond(group->alone + deep + loose + ck_lanes_choose(held.holds, none, one), 0);
+}
+
+CK_INLINE void go(const ck_Touched *touch, const Surface *surface, Group *group) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
+    const double dt = touch->dt;
+    const Group start = *group;
+    const ck_Lanes depth = ck_lanes_choose(ck_lanes_less(surface->gap, none), surface->gap, none);
+    group->x = ck_lanes3_subtract_scaled(start.x, depth, surface->normal);
+    group->v = press_in(surface, start.v, start.a, dt, &group->alone);
+    const Held held = hold(surface, surface->normal, group->v, start.a, dt);
+    group->alone += ck_lanes_choose(ck_lanes_less(none, held.press), none, one);
+    group->alone += ends_within(surface->friction * held.press, group->v, &held, dt);
+    const ck_Lanes moves = ck_lanes_choose(held.holds, ck_lanes3_dot(start.v, start.v), one) +
+                           ck_lanes_choose(ck_lanes_less(depth, ck_lanes_all(-1e-3 * touch->slack)), one, none);
+    const ck_LaneMask goes = ck_lanes_less(none, moves);
+    slide(surface, &group->x, &group->v, start.a, held.left, held.press, dt, &group->normal);
+    group->x = ck_lanes3_choose(goes, group->x, start.x);
+    group->v = ck_lanes3_choose(goes, group->v, start.v);
+    group->change = filter(surface, group->normal, group->v, start.a, dt);
+}
+
+// Their impulses are added up lane by lane of a stripe, so that vectors of any width give the same sums.
+//   sums  [3*CK_STRIPE] N·s
+CK_INLINE void put_group(const ck_Touched *touch, const ck_Loose *loose, int at, const Group *start, const Group *end,
+                         double *sums) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1), half = ck_lanes_all(0.5 * touch->dt);
+    const ck_LaneMask is_done = ck_lanes_less(end->alone, 0.5 * one); // what is no number is alone, too
+    const ck_Lanes3 kept = ck_lanes3_subtract_scaled(end->v, half, end->change);
+    ck_lanes_store(loose->is_alone + at, ck_lanes_choose(is_done, none, one));
+    store(loose->x, loose, at, ck_lanes3_choose(is_done, end->x, start->x));
+    store(loose->v, loose, at, ck_lanes3_choose(is_done, kept, start->v));
+    store(loose->predicted, loose, at, end->v);
+    const ck_Lanes3 free = ck_lanes3_add_scaled(start->v, ck_lanes_all(touch->dt), start->a);
+    const ck_Lanes3 gained = ck_lanes3_scale(ck_lanes_load(loose->mass + at), ck_lanes3_subtract(end->v, free));
+    double *sum = sums + at % CK_STRIPE;
+    ck_lanes3_store(
+        sum, ck_lanes3_add(ck_lanes3_load(sum), ck_lanes3_choose(is_done, gained, (ck_Lanes3){none, none, none})));
+}
+
+ck_TouchSlide CK_LOOP(ck_touch_slide);
+void CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, double *impulse) {
+    const ck_Loose local = *all, *loose = &local;
+    double sums[3 * CK_STRIPE] = {0};
+    for (int at = 0; at < loose->count; at += CK_LANES) {
+        const Group start = {
+            .x = load(loose->x, loose, at), .v = load(loose->v, loose, at), .a = load(loose->a, loose, at)};
+        Group end = start;
+        const Surface surface = find_surface(touch, start.x, ck_near_way(start.v, start.a, touch->dt), &end.alone);
+        end.normal = surface.normal;
+        if (!all_rest(touch, &surface, &end)) go(touch, &surface, &end);
+        put_group(touch, loose, at, &start, &end, sums);
+        store(loose->normal, loose, at, end.normal);
+        ck_lanes_store(loose->curvature + at, surface.curvature);
+        ck_lanes_store(loose->friction + at, surface.friction);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        for (int lane = 0; lane < CK_STRIPE; lane++) impulse[axis] += sums[axis * CK_STRIPE + lane];
+}
+
+ck_TouchHold CK_LOOP(ck_touch_hold);
+void CK_LOOP(ck_touch_hold)(double dt, const ck_Loose *all) {
+    const ck_Loose local = *all, *loose = &local;
+    const ck_Lanes none = {0}, half = ck_lanes_all(0.5 * dt);
+    for (int at = 0; at < loose->count; at += CK_LANES) {
+        const Surface surface = {.curvature = ck_lanes_load(loose->curvature + at),
+                                 .friction = ck_lanes_load(loose->friction + at)};
+        const ck_Lanes3 v = load(loose->v, loose, at);
+        const ck_Lanes3 change = filter(&surface, load(loose->normal, loose, at), load(loose->predicted, loose, at),
+                                        load(loose->a, loose, at), dt);
+        const ck_LaneMask is_alone = ck_lanes_less(none, ck_lanes_load(loose->is_alone + at));
+        store(loose->v, loose, at, ck_lanes3_choose(is_alone, v, ck_lanes3_add_scaled(v, half, change)));
+    }
+}
