@@ -1,12 +1,11 @@
 #include "bench.h"
 
+#include "bench_body.h"
 #include "engines.h"
 #include "loops.h"
 #include "process.h"
-#include "scene.h"
 #include "springs.h"
 #include "statistics.h"
-#include "time_scale.h"
 
 #include <malloc.h>
 #include <math.h>
@@ -18,18 +17,16 @@
 #define MAX_SIZES 16 // of a growing cloth, whose side doubles
 // How long a repeat lasts at least, s: far above the clock's grain.
 #define REPEAT 0.02
-// Substeps of a frame: what an engine does once a frame is shared out, as in use.
-#define SUBSTEPS 16
 // Sweeps that a start may take to the strain that is asked for.
 #define MOST_SWEEPS 4096
 #define STRAIN 0.04
 
-typedef struct Body {
-    const char *name;
-    uint32_t rows, columns; // columns 1: a rope
-} Body;
-
-static const Body bodies[] = {{"cloth", 20, 20}, {"cloth", 64, 64}, {"cloth", 256, 256}, {"rope", 1000, 1}};
+static const ck_BenchBody bodies[] = {
+    {"cloth", CK_BENCH_CLOTH, 20, 20},     {"cloth", CK_BENCH_CLOTH, 64, 64},  {"cloth", CK_BENCH_CLOTH, 256, 256},
+    {"rope", CK_BENCH_ROPE, 1000, 1},      {"ropes", CK_BENCH_ROPES, 32, 128}, {"mesh", CK_BENCH_MESH, 17, 17},
+    {"mesh", CK_BENCH_MESH, 55, 55},       {"mesh", CK_BENCH_MESH, 173, 173},  {"on_ball", CK_BENCH_ON_BALL, 20, 20},
+    {"on_ball", CK_BENCH_ON_BALL, 64, 64},
+};
 #define BODIES (sizeof bodies / sizeof *bodies)
 
 // Operations of a row kernel on a regular cloth with shear, as a processor's arithmetic units issue them for a lane:
@@ -88,35 +85,6 @@ typedef struct Entrant {
     char reason[200]; // why there is no time; empty: there is
 } Entrant;
 
-// A body of 1 m and 0.2 kg in gravity, let go level: k = 1000 N/m along, 500 across. A substep is half of the explicit
-// bound without damping, so that every engine steps alike.
-static ck_Status build(ck_Model *model, const Body *body, bool is_damped, ck_Error *error) {
-    double down[3] = {0, 0, 1}, gravity[3] = {0, -9.81, 0}, along[3] = {1, 0, 0};
-    char *pins[] = {body->columns > 1 ? "top_left" : "first", body->columns > 1 ? "top_right" : "first"};
-    uint32_t longest = body->rows > body->columns ? body->rows : body->columns;
-    ck_SceneCloth cloth = {.rows = body->rows, .columns = body->columns, .spacing = 1.0 / (longest - 1), .mass = 0.2};
-    ck_SceneRope rope = {.particles = body->rows, .spacing = cloth.spacing, .mass = 0.2};
-    ck_SceneSprings springs = {
-        .stiffness = 1000, .shear = body->columns > 1 ? 500 : 0, .damping = is_damped ? 0.02 : 0};
-    cloth.down = down;
-    rope.along = along;
-    ck_SceneFile file = {.name = (char *)body->name,
-                         .cloth = body->columns > 1 ? &cloth : NULL,
-                         .rope = body->columns > 1 ? NULL : &rope,
-                         .springs = &springs,
-                         .pins = pins,
-                         .pins_count = 2,
-                         .gravity = gravity,
-                         .drag = is_damped ? 2 : 0,
-                         .time = {1, 1}};
-    ck_Scene scene = {.file = &file};
-    ck_Status status = ck_model_build(model, &scene, error);
-    double frequency = 0;
-    if (!status) status = ck_stability_frequency(model, &frequency);
-    if (!status) model->step = SUBSTEPS / frequency;
-    return status;
-}
-
 // Time of a substep, s: CPU time, but of threads that share it wall time.
 static double time_frames(Entrant *entrant, int frames) {
     double (*clock)(void) = entrant->candidate->settings.threads > 1 ? ck_wall : ck_thread_cpu;
@@ -124,7 +92,7 @@ static double time_frames(Entrant *entrant, int frames) {
     for (int i = 0; i < frames && !*entrant->reason; i++)
         if (entrant->engine->step(entrant->state) != CK_STEP_OK)
             snprintf(entrant->reason, sizeof entrant->reason, "did not get through its steps");
-    return (clock() - start) / frames / SUBSTEPS;
+    return (clock() - start) / frames / CK_BENCH_SUBSTEPS;
 }
 
 static bool sets(const Candidate *candidate, const char *own) {
@@ -148,19 +116,19 @@ static void create(Entrant *entrant, const ck_Model *model, ck_Settings wanted) 
 static void enter(Entrant *entrant, const Candidate *candidate, const ck_Model *model, const ck_BenchOptions *options) {
     *entrant = (Entrant){.engine = ck_engine_find(candidate->engine), .candidate = candidate};
     ck_Settings wanted = candidate->settings;
-    wanted.substeps = SUBSTEPS;
+    wanted.substeps = CK_BENCH_SUBSTEPS;
     create(entrant, model, wanted);
-    if (sets(candidate, "vectors") && (model->columns <= 1 || candidate->value >= ck_loops_at(0)->lanes))
+    if (sets(candidate, "vectors") && (candidate->value >= ck_loops_at(0)->lanes))
         snprintf(entrant->reason, sizeof entrant->reason, "no other than without that setting");
     if (*entrant->reason) return;
-    double once = SUBSTEPS * time_frames(entrant, 1);
+    double once = CK_BENCH_SUBSTEPS * time_frames(entrant, 1);
     entrant->frames = (int)fmax(1, ceil(REPEAT / fmax(once, 1e-9)));
     if (once > options->budget)
         snprintf(entrant->reason, sizeof entrant->reason, "one frame takes longer than the budget");
 }
 
 // quartiles: the median, the lower and the upper one; NULL: none, for the reason.
-static void add_row(ck_Csv *csv, const Body *body, const ck_Model *model, const char *engine, const char *setup,
+static void add_row(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const char *engine, const char *setup,
                     const char *metric, const char *unit, const double *quartiles, double scale, const char *reason) {
     ck_csv_text(csv, body->name);
     ck_csv_count(csv, (uint64_t)model->particle_count);
@@ -187,7 +155,7 @@ static double updates_of(const Entrant *entrant, const ck_Model *model) {
 }
 
 // This engine's time over that of the native one, an update of each, round by round; of threads the gain.
-static void add_ratio(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant,
+static void add_ratio(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const Entrant *entrant,
                       const Entrant *native) {
     double ratios[MAX_ROUNDS], quartiles[3];
     bool is_shared = entrant->candidate->settings.threads > 1;
@@ -202,16 +170,16 @@ static void add_ratio(ck_Csv *csv, const Body *body, const ck_Model *model, cons
 }
 
 // The share of the processor's peak that the row kernels reach: on cloths, with one thread.
-static void add_share(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant, double peak,
+static void add_share(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const Entrant *entrant, double peak,
                       const double *quartiles) {
     const Work *each = &entrant->candidate->work;
-    if (body->columns == 1 || each->spring == 0 || !ck_loops_at(0)->fuses) return;
+    if (body->kind != CK_BENCH_CLOTH || each->spring == 0 || !ck_loops_at(0)->fuses) return;
     double work = each->spring * updates_of(entrant, model) + each->particle * (double)model->particle_count;
     const double shares[3] = {work / peak / quartiles[0], work / peak / quartiles[2], work / peak / quartiles[1]};
     add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup, "share_of_peak", "1", shares, 1, NULL);
 }
 
-static void add_entrant(ck_Csv *csv, const Body *body, const ck_Model *model, const Entrant *entrant,
+static void add_entrant(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const Entrant *entrant,
                         const Entrant *native, double peak) {
     const char *name = entrant->engine->name, *setup = entrant->candidate->setup;
     if (*entrant->reason || !entrant->count) {
@@ -233,11 +201,13 @@ static void leave(Entrant *entrants, size_t count) {
 }
 
 // All engines on one body, in rounds: a slow spell of the machine hits all alike.
-static ck_Status race(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, double peak, ck_Error *error) {
+static ck_Status race(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptions *options, double peak,
+                      ck_Error *error) {
     ck_Model models[2] = {0}; // undamped, damped
     Entrant *entrants = calloc(CANDIDATES, sizeof *entrants);
-    ck_Status status = entrants ? build(&models[0], body, false, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!status) status = build(&models[1], body, true, error);
+    ck_Status status =
+        entrants ? ck_bench_body_build(&models[0], body, false, error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_bench_body_build(&models[1], body, true, error);
     for (size_t i = 0; i < CANDIDATES && !status; i++) {
         if (options->progress) options->progress(body->name, candidates[i].engine);
         enter(&entrants[i], &candidates[i], &models[candidates[i].is_damped], options);
@@ -255,9 +225,9 @@ static ck_Status race(ck_Csv *csv, const Body *body, const ck_BenchOptions *opti
 }
 
 // What a simulated second costs where each engine's own rules set its step, on the body as it is let go.
-static ck_Status add_seconds(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, ck_Error *error) {
+static ck_Status add_seconds(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptions *options, ck_Error *error) {
     ck_Model model = {0};
-    ck_Status status = build(&model, body, false, error);
+    ck_Status status = ck_bench_body_build(&model, body, false, error);
     for (int i = 0; i < ck_engine_count() && !status; i++) {
         Candidate automatic = {.engine = ck_engine_at(i)->name, .setup = "automatic"};
         Entrant entrant = {.engine = ck_engine_at(i), .candidate = &automatic};
@@ -266,7 +236,7 @@ static ck_Status add_seconds(ck_Csv *csv, const Body *body, const ck_BenchOption
         create(&entrant, &model, automatic.settings);
         double spent = 0;
         while (!*entrant.reason && spent < 10 * REPEAT && entrant.count < MAX_ROUNDS) {
-            double once = SUBSTEPS * time_frames(&entrant, 1);
+            double once = CK_BENCH_SUBSTEPS * time_frames(&entrant, 1);
             spent += once;
             entrant.times[entrant.count++] = once / model.step;
         }
@@ -290,7 +260,7 @@ static double sweep_start(const Candidate *candidate, const ck_Model *model, uin
     *seconds = NAN;
     if (*entrant.reason) return NAN;
     double *state = malloc(6 * sizeof *state * (size_t)model->particle_count), strain = NAN;
-    *seconds = SUBSTEPS * time_frames(&entrant, 1);
+    *seconds = CK_BENCH_SUBSTEPS * time_frames(&entrant, 1);
     if (state && !*entrant.reason) {
         entrant.engine->read(entrant.state, state, state + 3 * model->particle_count);
         strain = ck_springs_rms_strain(model, state);
@@ -319,8 +289,8 @@ static uint32_t find_sweeps(const Candidate *candidate, const ck_Model *model) {
 }
 
 // A cloth of rigid bars that starts 10 % too long, hung by its upper corners, without gravity: the time to 4 % strain.
-static ck_Status build_stretched(ck_Model *model, const Body *body, ck_Error *error) {
-    ck_Status status = build(model, body, false, error);
+static ck_Status build_stretched(ck_Model *model, const ck_BenchBody *body, ck_Error *error) {
+    ck_Status status = ck_bench_body_build(model, body, false, error);
     for (int i = 0; i < model->spring_count && !status; i++) {
         model->springs[i].rest /= 1.1;
         model->springs[i].stiffness = INFINITY;
@@ -335,7 +305,7 @@ static bool has_residual(const Candidate *candidate) {
     return candidate->settings.iterations && !candidate->settings.threads && !sets(candidate, "vectors");
 }
 
-static ck_Status add_residuals(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, ck_Error *error) {
+static ck_Status add_residuals(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptions *options, ck_Error *error) {
     ck_Model model = {0};
     uint32_t sweeps[CANDIDATES] = {0};
     double times[CANDIDATES][MAX_ROUNDS], quartiles[3];
@@ -381,10 +351,10 @@ static double bytes_in_use(void) {
 }
 
 // One size of the growing cloth: step time and the memory of the engine's own state.
-static ck_Status grow_to(ck_Csv *csv, const Body *body, const ck_BenchOptions *options, double *seconds,
+static ck_Status grow_to(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptions *options, double *seconds,
                          ck_Error *error) {
     ck_Model model = {0};
-    ck_Status status = build(&model, body, false, error);
+    ck_Status status = ck_bench_body_build(&model, body, false, error);
     if (!status) {
         Entrant entrant;
         double before = bytes_in_use();
@@ -411,26 +381,26 @@ static ck_Status grow(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *err
     for (uint32_t side = 16; side <= (uint32_t)options->largest && !status; side *= 2) {
         double seconds = NAN;
         if (options->progress) options->progress("growing cloth", "native-verlet");
-        status = grow_to(csv, &(Body){"cloth", side, side}, options, &seconds, error);
+        status = grow_to(csv, &(ck_BenchBody){"cloth", CK_BENCH_CLOTH, side, side}, options, &seconds, error);
         if (isnan(seconds)) continue;
         x[count] = 2 * log(side);
         y[count++] = log(seconds);
     }
     const double p = ck_slope(x, y, count), each[3] = {p, p, p};
     ck_Model none = {0};
-    add_row(csv, &(Body){.name = "cloth"}, &none, "native-verlet", "", "growth_exponent", "1", each, 1, NULL);
+    add_row(csv, &(ck_BenchBody){.name = "cloth"}, &none, "native-verlet", "", "growth_exponent", "1", each, 1, NULL);
     return status;
 }
 
-static bool is_taken(const Body *body, const ck_BenchOptions *options) {
-    return body->columns == 1 || (int)body->rows <= options->largest;
+static bool is_taken(const ck_BenchBody *body, const ck_BenchOptions *options) {
+    return body->kind == CK_BENCH_ROPE || (int)body->rows <= options->largest;
 }
 
 ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
     double peak = find_peak();
     const double each[3] = {peak, peak, peak};
     ck_Model none = {0};
-    add_row(csv, &(Body){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
+    add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
     ck_Status status = CK_OK;
     for (size_t i = 0; i < BODIES && !status; i++)
         if (is_taken(&bodies[i], options)) status = race(csv, &bodies[i], options, peak, error);

@@ -328,16 +328,17 @@ static void test_demo(void **state) {
     free(page);
 }
 
-// Every engine that takes a rope is timed on it.
+// Every engine that takes a body is timed on it.
 static void test_bench(void **state) {
     (void)state;
     char arguments[100];
-    snprintf(arguments, sizeof arguments, "bench --rounds 1 --largest 16 --out %s/bench", fixture_directory);
+    snprintf(arguments, sizeof arguments, "bench --rounds 1 --largest 17 --out %s/bench", fixture_directory);
     assert_int_equal(fixture_program(arguments), 0);
     char *csv = fixture_read("bench/bench.csv");
     assert_non_null(csv);
     assert_non_null(strstr(csv, "rope,1000,999,native-verlet,,step_time,s,"));
     assert_non_null(strstr(csv, "rope,1000,999,bullet-pbd,10 iterations,update_time,ns,"));
+    assert_non_null(strstr(csv, "mesh,289,800,native-verlet,,step_time,s,"));
     free(csv);
 }
 
