@@ -218,7 +218,7 @@ test("what was done is saved as a scene whose results are those that were shown"
 	await page.waitForFunction(() => /saved/.test(document.getElementById("status").textContent));
 	assert.ok((await status()).includes(join(directory, "done.yaml")));
 	const out = join(directory, "again");
-	execFileSync(CLOTHCHECK, ["compare", join(directory, "done.yaml"), ...engines.flatMap((name) => ["-e", name]), "--repeats", "0", "--out", out], { cwd: SOURCES });
+	execFileSync(CLOTHCHECK, ["compare", join(directory, "done.yaml"), ...engines.flatMap((name) => ["-e", name]), "--repeats", "0", "--patience", "0", "--out", out], { cwd: SOURCES });
 	const rows = readFileSync(join(out, "metrics.csv"), "utf8").split("\n").map((line) => line.split(","));
 	const shown = await page.evaluate(() => globalThis.live.frame.engines.map(({ sag, strain }) => ({ sag, strain })));
 	engines.forEach((engine, i) => {
