@@ -2,11 +2,6 @@
 
 #include "explicit_kind.h"
 
-bool ck_explicit_fits(const ck_Model *model) {
-    return model->spring_count && !model->hinge_count && !model->wind.face_count && !model->driven_count &&
-           !model->rigid_count && !(model->jitter > 0);
-}
-
 static ck_Status create(ck_Explicit **body, const ck_ExplicitKind *kind, const ck_ExplicitSetup *setup,
                         ck_Error *error) {
     ck_Status status = kind->create(body, setup, error);

@@ -20,12 +20,9 @@ typedef struct ck_ExplicitSetup {
     const double *position, *velocity, *inverse_mass;
 } ck_ExplicitSetup;
 
-// True where springs, a uniform field and drag are all that moves a model's particles between contacts.
-bool ck_explicit_fits(const ck_Model *model);
-
 // In rows where the model is a regular cloth, else as a list, whatever springs it has. What air, hinges, driven pins
 // and rigid bodies do is left out: see ck_explicit_pull. Memory: rows 13 doubles a particle; lists 22, and 4 to 6 a
-// spring. Errors: CK_NO_MEMORY. Free with ck_explicit_destroy.
+// spring. Errors: CK_NO_MEMORY; CK_REFUSED for a list beyond CK_MOST_LISTED. Free with ck_explicit_destroy.
 ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
 ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
 // Goes on from another state, or with other pins, of the same model.

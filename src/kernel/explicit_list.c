@@ -103,14 +103,12 @@ static void read_state(const ck_Explicit *body, double *position, double *veloci
     gather(list, velocity, list->v, CK_POINT);
 }
 
-static void accelerate(ck_ExplicitList *list) {
-    for (int chunk = 0; chunk < list->springs.chunks; chunk++) list->loops->list_pull(list, chunk);
-}
-
+// A kick that goes nowhere: v is not read where others step.
 void ck_explicit_pull(ck_Explicit *body, const double *position, const double *velocity, double *acceleration) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
     seat(list, position, velocity);
-    accelerate(list);
+    memset(list->v, 0, CK_POINT * sizeof(double) * (size_t)list->springs.places);
+    kick(body);
     gather(list, acceleration, list->a, CK_POINT);
 }
 
@@ -141,8 +139,9 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
         for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
     }
     seat(list, setup->position, setup->velocity);
+    // where it is, and the acceleration there: what a kick gives that goes nowhere
+    kick(body);
     scatter(list, list->v, CK_POINT, setup->velocity);
-    accelerate(list);
 }
 
 static bool allocate(ck_ExplicitList *list) {

@@ -56,7 +56,6 @@ typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_
 // The same over a chunk of a list of springs; see list_loop.h.
 typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk);
 typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, bool advances);
-typedef void ck_ListPull(const struct ck_ExplicitList *list, int chunk);
 typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
                           uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
@@ -75,7 +74,6 @@ typedef struct ck_Loops {
     ck_TouchHold *touch_hold;
     ck_ListStart *list_start;
     ck_ListChunk *list_chunk;
-    ck_ListPull *list_pull;
     ck_NearChunk *near_chunk;
     ck_ProjectionWave *projection_wave;
     ck_Peak *peak;

@@ -18,11 +18,14 @@ static bool joins_neighbours(const ck_Spring *spring, int columns) {
     return (down == 0 && right == reach) || (down == reach && right == 0);
 }
 
+bool ck_only_springs_act(const ck_Model *model) {
+    return model->spring_count && !model->hinge_count && !model->wind.face_count && !model->driven_count &&
+           !model->rigid_count && !(model->jitter > 0);
+}
+
 bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs) {
     *springs = (ck_RowSprings){0};
-    if (model->body != CK_CLOTH || !model->spring_count || model->hinge_count || model->wind.face_count ||
-        model->driven_count || model->rigid_count || model->jitter > 0)
-        return false;
+    if (model->body != CK_CLOTH || !ck_only_springs_act(model)) return false;
     for (int i = 1; i < model->particle_count; i++)
         if (model->mass[i] != model->mass[0]) return false;
     int counts[CK_SPRING_KINDS] = {0}, rows = model->particle_count / model->columns;

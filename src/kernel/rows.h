@@ -19,6 +19,9 @@ typedef struct ck_RowSprings {
     double damping;                                           // N·s/m
 } ck_RowSprings;
 
+// True where springs, a uniform field, drag and colliders are all that moves a model's particles, at even steps.
+bool ck_only_springs_act(const ck_Model *model);
+
 // True for a cloth with every spring of each of its kinds, all of a kind and all masses alike: what the row kernels are
 // for. A cloth that misses one spring is not.
 bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs);

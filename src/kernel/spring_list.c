@@ -270,6 +270,9 @@ static bool build(ck_SpringList *list, Order *order) {
 ck_Status ck_spring_list_build(ck_SpringList *list, const ck_Model *model, ck_Error *error) {
     Order order = {0};
     *list = (ck_SpringList){0};
+    if (model->particle_count > CK_MOST_LISTED || model->spring_count > CK_MOST_LISTED)
+        return ck_fail(error, CK_REFUSED, "steps at most %d particles and springs that are no regular cloth",
+                       CK_MOST_LISTED);
     const bool is_built = allocate_order(&order, model) && build(list, &order);
     free_order(&order);
     return is_built ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");

@@ -15,8 +15,8 @@
 // What stands at a place and for a spring, in bytes: numbers of theirs are as far apart, so that none is multiplied.
 #define CK_SEAT_BYTES 64u
 #define CK_FORCE_BYTES 32u
-// The most particles and springs that numbers of 32 bits reach.
-#define CK_MOST_LISTED (1 << 26)
+// The most particles, and the most springs, whose places, some of them spare, numbers of 32 bits reach.
+#define CK_MOST_LISTED (1 << 25)
 
 // The ends of a pack's springs. Where there are fewer, both ends are the chunk's spare place.
 typedef struct ck_Pack {
@@ -58,8 +58,8 @@ typedef struct ck_SpringList {
     uint32_t *joined; // CK_PACK times the pack, and the lane, times CK_FORCE_BYTES; without force: beyond all packs
 } ck_SpringList;
 
-// Cost: linear in particles and springs. Errors: CK_NO_MEMORY. Free
-// with ck_spring_list_free in any case.
+// Cost: linear in particles and springs. Errors: CK_NO_MEMORY, CK_REFUSED beyond CK_MOST_LISTED. Free with
+// ck_spring_list_free in any case.
 ck_Status ck_spring_list_build(ck_SpringList *list, const ck_Model *model, ck_Error *error);
 void ck_spring_list_free(ck_SpringList *list);
 

@@ -2,6 +2,7 @@
 
 #include "collider.h"
 #include "path.h"
+#include "slide.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -132,42 +133,6 @@ static void strike(const ck_Contact *contact, const ck_Collider *collider, const
     if (sliding > 0) ck_add_scaled(v, -fmin(1, collider->friction * jump / sliding), along);
 }
 
-// How hard a surface is pressed on, per mass: what bends the path inwards counts as not pressing. ≤ 0: not at all.
-static double pressing(const ck_Collider *collider, const double *normal, const double *x, const double *v,
-                       const double *a) {
-    // planes and balls, which are most, have one part
-    const double turn = collider->shape == CK_PLANE ? 0
-                        : collider->shape == CK_SPHERE
-                            ? ck_dot(v, v) / collider->radius
-                            : ck_collider_turn(collider, ck_collider_part(collider, x, v), v);
-    return -ck_dot(a, normal) - turn;
-}
-
-// m/s: what is slower than this lies still, but for the rounding of a collider's own speed.
-static double still_speed(double friction, double dt) {
-    return friction * dt * 1e-9;
-}
-
-// One collider's part of ck_contact_filter; false where it is not pressed on. Friction points against the way of half a
-// substep: what has just begun to slide turns into its push much faster than that, and against its first direction it
-// would be thrown to and fro. Against the push a slide keeps its direction until it stops.
-static bool hold(const ck_Collider *collider, const double *normal, double dt, const double *x, const double *v,
-                 double *a) {
-    double press = pressing(collider, normal, x, v, a), along[3], drive[3];
-    if (!(press > 0)) return false;
-    ck_tangential(along, v, normal);
-    ck_add_scaled(a, -ck_dot(a, normal), normal);
-    memcpy(drive, a, sizeof drive);
-    double sliding = ck_length(along), driving = ck_length(drive), friction = collider->friction * press;
-    if (sliding > still_speed(friction, dt)) {
-        if (ck_dot(along, drive) > 0) ck_add_scaled(along, 0.5 * dt, drive);
-        ck_add_scaled(a, -friction / ck_length(along), along);
-    } else if (driving > 0) {
-        ck_add_scaled(a, -fmin(1, friction / driving), drive);
-    }
-    return true;
-}
-
 // The surfaces that hold a particle at once; of more than so many, the first.
 #define MAX_NORMALS 8
 typedef struct Hold {
@@ -208,7 +173,7 @@ static inline __attribute__((always_inline)) const ck_Collider *support(const ck
         if (ck_collider_gap(collider, seen.x, out) > contact->slack) continue;
         // leaving, faster than rounding: that of the collider's own speed, too
         if (ck_dot(seen.v, out) > 1e-12 * (moves ? ck_length(seen.v) + ck_length(v) : ck_length(v))) continue;
-        if (!hold(collider, out, contact->dt, seen.x, seen.v, moves ? seen.own[2] : left)) continue;
+        if (!ck_slide_hold(collider, out, contact->dt, seen.x, seen.v, moves ? seen.own[2] : left)) continue;
         if (moves) {
             memcpy(left, seen.a, 3 * sizeof(double));
             ck_add_scaled(left, 1, motion_of(contact, collider)->acceleration);
@@ -233,106 +198,6 @@ static void fly(double *x, double *v, const double *a, double time) {
     ck_add_scaled(x, time, v);
     ck_add_scaled(x, 0.5 * time * time, a);
     ck_add_scaled(v, time, a);
-}
-
-// Puts a point onto a surface that it is as good as on.
-static void place(const ck_Collider *collider, double *x, double *normal) {
-    double gap = ck_collider_gap(collider, x, normal);
-    ck_add_scaled(x, -gap, normal);
-}
-
-// How a slide goes on: friction takes all of a speed where it is stronger than what pushes along the surface, and else
-// that along its own way, which the push turns.
-typedef enum Ending { GOES_ON, STOPS, TURNS } Ending;
-
-// When it stops or turns, s; INFINITY where it goes on. T = v·(q + f·cos θ)/(q² − f²) of a constant push f at an angle
-// θ to v, by v' = f·cos θ − q and v·θ' = −f·sin θ: the way turns into the push while friction q slows it down.
-//   push  [3] m/s², along the surface;  left  what friction leaves of it
-static double stop_time(double friction, double dt, const double *v, const double *push, const double *left,
-                        Ending *ending) {
-    const double speed = ck_length(v), rate = ck_dot(v, left);
-    *ending = GOES_ON;
-    if (!(speed > still_speed(friction, dt))) return INFINITY;
-    const double f = ck_length(push);
-    *ending = friction > f ? STOPS : rate < 0 ? TURNS : GOES_ON;
-    if (*ending == STOPS) return (speed * friction + ck_dot(v, push)) / ((friction - f) * (friction + f));
-    return *ending == TURNS ? -speed * speed / rate : INFINITY;
-}
-
-// Takes the speed along a direction, which need not be of length 1.
-static void stop_along(double *v, const double *way) {
-    const double squared = ck_dot(way, way);
-    if (squared > 0) ck_add_scaled(v, -ck_dot(v, way) / squared, way);
-}
-
-// What an acceleration, less friction, does on the way over a curved surface that begins by leading straight on by
-// flat, m²/s²: the way turns by an angle whose tangent is flat's part across over the radius.
-static double work_over(const ck_Collider *carrier, ck_Part part, const double *normal, const double *flat,
-                        const double *a, double friction) {
-    const double radius = carrier->radius;
-    double across[3];
-    ck_collider_across(carrier, part, flat, across);
-    const double squared = ck_dot(across, across) / (radius * radius);
-    const double cosine = 1 / sqrt(1 + squared), less = squared * cosine * cosine / (1 + cosine); // 1 − cosine
-    const double length = ck_dot(flat, flat) - radius * radius * (squared - 2 * less);
-    return ck_dot(a, flat) - less * (ck_dot(a, across) + radius * ck_dot(a, normal)) - friction * sqrt(fmax(0, length));
-}
-
-// True where a way is known from how it begins: on a ball, and where it is so short that nothing else is reached. From
-// where it ends it is known to rounding, which of a creep of 1e-8 m/s would leave nothing.
-static bool is_foreseen(const ck_Collider *carrier, const double *flat) {
-    return carrier->shape == CK_SPHERE || ck_dot(flat, flat) < 1e-12 * carrier->radius * carrier->radius;
-}
-
-// Along a surface. On a ball the speed follows from the work done, which keeps its energy whatever the step.
-static void slide(const ck_Collider *carrier, double *x, double *v, const double *a, const double *left, double time,
-                  Ending ending) {
-    double flat[3] = {0, 0, 0}, from[3], slid[3], normal[3], way[3], speed_squared = ck_dot(v, v);
-    const ck_Part part = ck_collider_part(carrier, x, v);
-    memcpy(from, x, sizeof from);
-    memcpy(slid, v, sizeof slid);
-    ck_collider_gap(carrier, x, normal);
-    const double friction = carrier->friction * pressing(carrier, normal, x, v, a);
-    ck_add_scaled(flat, time, v);
-    ck_add_scaled(flat, 0.5 * time * time, left);
-    ck_add_scaled(x, 1, flat);
-    ck_add_scaled(v, time, left);
-    if (ending == STOPS) memset(v, 0, 3 * sizeof(double));
-    if (ending == TURNS) stop_along(v, slid);
-    if (ck_collider_is_flat(carrier, part)) return;
-    double worked = is_foreseen(carrier, flat) ? work_over(carrier, part, normal, flat, a, friction) : NAN;
-    place(carrier, x, normal);
-    ck_add_scaled(v, -ck_dot(v, normal), normal);
-    if (ending != GOES_ON) return;
-    ck_subtract(way, x, from);
-    if (isnan(worked)) worked = ck_dot(a, way) - friction * ck_length(way);
-    double speed = ck_length(v);
-    double scale = speed > 0 ? sqrt(fmax(0, speed_squared + 2 * worked)) / speed : 0;
-    for (int axis = 0; axis < 3; axis++) v[axis] *= scale;
-}
-
-// The first time after which c + v·t + a·t²/2 is above 0, from below it; INFINITY: never.
-static double rise_time(double c, double v, double a) {
-    const double root = v * v - 2 * a * c;
-    if (root < 0) return INFINITY;
-    const double time = v > 0 ? -2 * c / (v + sqrt(root)) : a > 0 ? (sqrt(root) - v) / a : INFINITY;
-    return time > 0 ? time : INFINITY;
-}
-
-// When a slide leaves a face of a box, s, beyond which the surface turns away.
-static double border_time(const ck_Collider *collider, const double *x, const double *v, const double *a) {
-    if (collider->shape != CK_BOX) return INFINITY;
-    const ck_Part part = ck_collider_part(collider, x, v);
-    double first = INFINITY, from[3];
-    ck_subtract(from, x, collider->point);
-    for (int k = 0; k < 3; k++) {
-        const double *axis = collider->axes[k], local = ck_dot(axis, from);
-        if (part.beyond[k]) continue;
-        for (int sign = -1; sign <= 1; sign += 2)
-            first = fmin(first, rise_time(fmin(0, sign * local - collider->half[k]), sign * ck_dot(axis, v),
-                                          sign * ck_dot(axis, a)));
-    }
-    return first;
 }
 
 static inline __attribute__((always_inline)) const ck_Collider *first_hit(const ck_Contact *contact, const double *x,
@@ -388,27 +253,27 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
         Seen seen, rest;
         see(&seen, contact, seer, x, v, a, elapsed, moves);
         see(&rest, contact, seer, x, v, left, elapsed, moves);
-        Ending ending = GOES_ON;
+        ck_Ending ending = CK_GOES_ON;
         double stop = INFINITY;
         if (carrier && carrier->friction > 0) {
             double push[3];
             ck_tangential(push, seen.a, normal);
-            stop = stop_time(carrier->friction * pressing(carrier, normal, seen.x, seen.v, seen.a), contact->dt, seen.v,
-                             push, rest.a, &ending);
+            stop = ck_slide_stop_time(carrier->friction * ck_slide_press(carrier, normal, seen.x, seen.v, seen.a),
+                                      contact->dt, seen.v, push, rest.a, &ending);
         }
-        const double border = carrier ? border_time(carrier, seen.x, seen.v, rest.a) : INFINITY;
-        if (stop > fmin(time, border)) ending = GOES_ON;
+        const double border = carrier ? ck_slide_border_time(carrier, seen.x, seen.v, rest.a) : INFINITY;
+        if (stop > fmin(time, border)) ending = CK_GOES_ON;
         time = fmin(time, fmin(stop, border));
         const ck_Collider *hit = first_hit(contact, x, v, left, elapsed, moves, &time);
         if (carrier) {
-            slide(carrier, seen.x, seen.v, seen.a, rest.a, time, hit ? GOES_ON : ending);
+            ck_slide(carrier, seen.x, seen.v, seen.a, rest.a, time, hit ? CK_GOES_ON : ending);
             look_back(&seen, contact, carrier, elapsed + time, moves, x, v);
         } else {
             fly(x, v, left, time);
         }
         if (hit) {
             see(&seen, contact, hit, x, v, a, elapsed + time, moves);
-            place(hit, seen.x, normal);
+            ck_slide_place(hit, seen.x, normal);
             look_back(&seen, contact, hit, elapsed + time, moves, x, v);
         }
         left_time -= time;

@@ -174,7 +174,7 @@ static void start(Verlet *verlet) {
 static ck_Status lay_out(Verlet *verlet, ck_Error *error) {
     ck_Native *native = verlet->native;
     const ck_ExplicitSetup setup = setup_of(native);
-    verlet->is_whole = ck_explicit_fits(native->model);
+    verlet->is_whole = ck_only_springs_act(native->model);
     ck_Status status = verlet->is_whole ? ck_explicit_create(&native->springs, &setup, error)
                                         : ck_explicit_create_list(&native->springs, &setup, error);
     if (!status && verlet->is_whole) status = ck_verlet_contact_create(&verlet->contact, native, error);
@@ -291,7 +291,8 @@ static ck_Status create_narrow(void **state, const ck_Model *model, const ck_Set
                                ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
     if (!ck_rows_fit(model, &springs))
-        return ck_fail(error, CK_REFUSED, "is native-verlet but for the width of its vectors, which is measured on regular cloths");
+        return ck_fail(error, CK_REFUSED,
+                       "is native-verlet but for the width of its vectors, which is measured on regular cloths");
     ck_Settings narrow = *wanted;
     ck_settings_set(&narrow, CK_OWN + CK_NATIVE_VECTORS, 2);
     return create(state, model, &narrow, used, ledger, error);

@@ -5,7 +5,6 @@
 #include "segment.h"
 #include "vector.h"
 
-
 static void run(ck_Run *of, const ck_Model *model, const ck_Engine *engine) {
     const ck_Limits limits = ck_limits_default();
     ck_Error error = {0};

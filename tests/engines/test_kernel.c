@@ -1,30 +1,14 @@
-// The row kernels against the plain loops that they stand for.
-#include "fixture.h"
+// The kernels of springs, in rows and as lists, against the plain loops that they stand for; and what all kernels
+// share.
+#include "fixture_loops.h"
 
-#include "constraint_kernel.h"
 #include "explicit.h"
 #include "lanes.h"
 #include "springs.h"
 #include "statistics.h"
-#include "sweep_order.h"
 #include "vector.h"
 
 #include <float.h>
-
-#define MOST_LOOPS 3
-
-// Every loop's numbers are near those of the plain formulas; those that fuse products and sums give the same bits.
-static void compare_loops(const char *text, double *const results[], const double *plain, size_t count) {
-    const ck_Loops *loops;
-    for (int kind = 0; (loops = ck_loops_at(kind)); kind++) {
-        double off = 0;
-        for (size_t i = 0; i < count; i++) off = fmax(off, fabs(results[kind][i] - plain[i]));
-        assert_near(text, off, 0, 1e-11);
-        if (loops->fuses && ck_loops_at(0)->fuses && memcmp(results[0], results[kind], count * sizeof *plain))
-            fail_msg("not the bits of every processor: %s", text);
-    }
-    for (int kind = 0; ck_loops_at(kind); kind++) free(results[kind]);
-}
 
 // The substep as its formula reads, with the reference integrator's forces.
 static void plain_step(const ck_Model *model, double dt, double *x, double *v, double *predicted, double *a) {
@@ -62,7 +46,7 @@ static void compare_explicit(const char *text, const ck_Model *model, bool is_li
         ck_explicit_destroy(cloth);
     }
     for (int i = 0; i < 100; i++) plain_step(model, dt, x, v, predicted, a);
-    compare_loops(text, results, state, 2 * count);
+    fixture_compare_loops(text, results, state, 2 * count);
     double moved = 0;
     for (size_t i = 0; i < count; i++) moved = fmax(moved, fabs(x[i] - model->position[i]));
     assert_true(moved > 1e-2);
@@ -142,162 +126,6 @@ static void test_list(void **state) {
         }
         compare_explicit(text, model, true);
         model->spring_count = springs;
-        fixture_free(&fixture);
-    }
-}
-
-// One spring by its formula, as constraint_kernel.h gives it. Tells of a long bar, and asks all whether they turned.
-static void plain_project(const ck_Model *model, const ck_ProjectionRule *rule, const ck_Spring *spring,
-                          const double *start, double *x, double *multiplier, bool asks_all, bool *is_far) {
-    double *a = x + 3 * spring->a, *b = x + 3 * spring->b, now[3], old[3], dt = rule->dt;
-    double weight_a = ck_model_inverse_mass(model, spring->a), weight_b = ck_model_inverse_mass(model, spring->b);
-    if (weight_a + weight_b == 0) return;
-    ck_subtract(now, b, a);
-    ck_subtract(old, start + 3 * spring->b, start + 3 * spring->a);
-    double length = ck_length(now), along = ck_dot(now, old), change;
-    if (rule->projection == CK_PROJECT_BARS) {
-        double square = spring->rest * spring->rest;
-        bool is_long = length * length > CK_LONG_BAR * square;
-        bool has_turned = (asks_all || is_long) && along < CK_TURNED_BAR * square;
-        const double *way = has_turned ? now : old;
-        change = -0.5 * rule->relaxation * (length * length - square) / (weight_a + weight_b);
-        change /= is_long ? ck_dot(now, way) : square;
-        if (is_long) *is_far = true;
-        ck_add_scaled(a, -weight_a * change, way);
-        ck_add_scaled(b, weight_b * change, way);
-        return;
-    }
-    double compliance = 1 / (spring->stiffness * dt * dt), gamma = spring->damping / (spring->stiffness * dt);
-    double moved = (length * length - along) / length; // ∇C·(x − x_start)
-    change = -rule->relaxation * (length - spring->rest + compliance * *multiplier + gamma * moved) /
-             ((1 + gamma) * (weight_a + weight_b) + compliance);
-    *multiplier += change;
-    ck_add_scaled(a, -weight_a * change / length, now);
-    ck_add_scaled(b, weight_b * change / length, now);
-}
-
-static void plain_substep(const ck_Model *model, const ck_ProjectionRule *rule, const int *order, double *x, double *v,
-                          double *before) {
-    int count = 3 * model->particle_count;
-    double *start = malloc(sizeof *start * (size_t)count);
-    double *multipliers = calloc((size_t)model->spring_count, sizeof *multipliers);
-    memcpy(start, x, sizeof *start * (size_t)count);
-    memcpy(before, v, sizeof *v * (size_t)count);
-    for (int i = 0; i < count; i++)
-        if (!model->pinned[i / 3]) x[i] += rule->dt * (rule->carry * v[i] + rule->push[i % 3]);
-    const size_t rows = (size_t)(model->particle_count / model->columns);
-    bool *is_far = calloc(2 * rows, sizeof *is_far), *was_far = is_far + rows;
-    for (uint32_t sweep = 0; sweep < rule->iterations; sweep++) {
-        for (int i = 0; i < model->spring_count; i++) {
-            const ck_Spring *spring = &model->springs[order[i]];
-            const int row = spring->a / model->columns;
-            plain_project(model, rule, spring, start, x, &multipliers[order[i]], was_far[row], &is_far[row]);
-        }
-        memcpy(was_far, is_far, rows * sizeof *is_far);
-    }
-    free(is_far);
-    for (int i = 0; i < count; i++) v[i] = rule->keep * (x[i] - start[i]) / rule->dt;
-    free(start);
-    free(multipliers);
-}
-
-// Roots and sums rounded otherwise, 1e-16 a substep; sweeps only even them out, substeps let them grow by less than
-// 1e4.
-static void compare_projection(const char *size, const char *springs, const char *noise, ck_Projection projection,
-                               uint32_t iterations, uint32_t substeps) {
-    char text[500];
-    snprintf(text, sizeof text,
-             "name: kernel\ncloth: {%s, spacing: 0.1, mass: 1, down: [0, 0, 1]}\nsprings: {%s}\npins: [top_left, 0:2]\n"
-             "noise: {amplitude: %s, seed: 5}\nvelocity: [0.3, -0.5, 0.2]\ngravity: [0, -9.81, 1]\n"
-             "time: {duration: 1, step: 0.01}\n",
-             size, springs, noise);
-    Fixture fixture;
-    fixture_load(&fixture, text);
-    const ck_Model *model = &fixture.model;
-    size_t count = 3 * (size_t)model->particle_count;
-    double *state = calloc(3 * count, sizeof *state), *weight = malloc(count * sizeof *weight), dt = 2e-3;
-    double *x = state, *v = state + count, *before = state + 2 * count;
-    int *order = malloc(sizeof *order * (size_t)model->spring_count);
-    ck_ProjectionRule rule = {projection, dt, iterations, 0.99, {0, -9.81 * dt, dt}, 0.98, 0, iterations > 1 ? 1.3 : 1};
-    ck_RowSprings row_springs;
-    memcpy(x, model->position, count * sizeof *x);
-    memcpy(v, model->velocity, count * sizeof *v);
-    for (int i = 0; i < model->particle_count; i++) weight[i] = ck_model_inverse_mass(model, i);
-    assert_true(ck_projection_fits(model, &row_springs));
-    assert_int_equal(ck_sweep_order(model, projection, order), CK_OK);
-    double *results[MOST_LOOPS];
-    for (int kind = 0; ck_loops_at(kind); kind++) {
-        ck_ProjectedCloth *cloth;
-        double *result = results[kind] = calloc(3 * count, sizeof *x);
-        assert_int_equal(
-            ck_projection_create(&cloth, ck_loops_at(kind), model, &row_springs, &rule, x, v, before, weight, NULL),
-            CK_OK);
-        // in two calls, as two frames are
-        ck_projection_step(cloth, substeps / 4, NULL);
-        ck_projection_step(cloth, substeps - substeps / 4, NULL);
-        ck_projection_read(cloth, result, result + count, result + 2 * count);
-        for (size_t i = count; i < 3 * count; i++) result[i] *= dt;
-        ck_projection_destroy(cloth);
-    }
-    for (uint32_t i = 0; i < substeps; i++) plain_substep(model, &rule, order, x, v, before);
-    for (size_t i = count; i < 3 * count; i++) state[i] *= dt;
-    compare_loops(text, results, state, 3 * count);
-    double moved = 0;
-    for (size_t i = 0; i < count; i++) moved = fmax(moved, fabs(x[i] - model->position[i]));
-    assert_true(moved > 1e-2);
-    free(order);
-    free(state);
-    free(weight);
-    fixture_free(&fixture);
-}
-
-// One sweep and several, one substep's in a block of interleaved sweeps or its sweeps in several blocks.
-static void test_projection(void **state) {
-    (void)state;
-    static const char *const sizes[] = {"rows: 2, columns: 3", "rows: 5, columns: 8", "rows: 6, columns: 16",
-                                        "rows: 9, columns: 19", "rows: 12, columns: 33"};
-    static const char *const springs[] = {"stiffness: 100", "stiffness: 100, shear: 50",
-                                          "stiffness: 100, shear: 50, damping: 0.05"};
-    for (size_t size = 0; size < sizeof sizes / sizeof *sizes; size++)
-        for (size_t i = 0; i < sizeof springs / sizeof *springs; i++)
-            for (uint32_t iterations = 1; iterations < 7; iterations += iterations < 3 ? 1 : 3) {
-                compare_projection(sizes[size], springs[i], "0.01", CK_PROJECT_BARS, iterations, 50);
-                compare_projection(sizes[size], springs[i], "0.01", CK_PROJECT_SPRINGS, iterations, 50);
-            }
-    compare_projection(sizes[2], "rigid: true", "0.01", CK_PROJECT_SPRINGS, 3, 50);
-}
-
-// Bars of up to three times their length, turned and not, with held ends and free ones. Such corrections let rounding
-// grow by more than ten a sweep, so that there are few of them.
-static void test_far_bars(void **state) {
-    (void)state;
-    compare_projection("rows: 5, columns: 8", "stiffness: 100, shear: 50", "0.08", CK_PROJECT_BARS, 3, 2);
-    compare_projection("rows: 9, columns: 19", "stiffness: 100", "0.06", CK_PROJECT_BARS, 4, 2);
-    compare_projection("rows: 12, columns: 33", "stiffness: 100, shear: 50", "0.08", CK_PROJECT_BARS, 2, 2);
-}
-
-// Two bars that are torn down to twice their length, or aside, where they turn by 45° to 75° and there is none of their
-// length along where they were: they have it again after forty sweeps, which on a bar converge as Newton's steps do.
-static void test_torn_bars(void **state) {
-    (void)state;
-    static const char *const pulls[] = {"[0, -16, 0]", "[16, 0, 0]", "[19, 0, 0]", "[27.7, 0, 0]", "[60, 0, 0]"};
-    for (size_t pull = 0; pull < sizeof pulls / sizeof *pulls; pull++) {
-        char text[300];
-        snprintf(text, sizeof text,
-                 "name: torn\ncloth: {rows: 2, columns: 2, spacing: 1, mass: 1}\nsprings: {rigid: true}\npins: "
-                 "[top_edge]\ngravity: %s\ntime: {duration: 0.25, step: 0.25}\n",
-                 pulls[pull]);
-        Fixture fixture;
-        fixture_load(&fixture, text);
-        for (int kind = 0; ck_loops_at(kind); kind++) {
-            ck_Trajectory trajectory;
-            const ck_Settings settings = {
-                .substeps = 1, .iterations = 40, .own = {ck_loops_at(kind)->lanes}, .own_set = 1};
-            fixture_run(&trajectory, &fixture.model, ck_engine_find("native-bars"), &settings, NULL);
-            const double *x = ck_trajectory_position(&trajectory, 1);
-            assert_near(pulls[pull], ck_distance(x, x + 6), 1, 1e-9);
-            ck_trajectory_free(&trajectory);
-        }
         fixture_free(&fixture);
     }
 }
@@ -500,10 +328,9 @@ static void test_fit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),      cmocka_unit_test(test_projection),
-        cmocka_unit_test(test_far_bars), cmocka_unit_test(test_torn_bars), cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_threads),  cmocka_unit_test(test_depth),     cmocka_unit_test(test_vectors),
-        cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),
+                                       cmocka_unit_test(test_contact),  cmocka_unit_test(test_threads),
+                                       cmocka_unit_test(test_depth),    cmocka_unit_test(test_vectors),
+                                       cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

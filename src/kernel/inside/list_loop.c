@@ -131,21 +131,6 @@ void CK_LOOP(ck_list_chunk)(const struct ck_ExplicitList *shared, int chunk, boo
         finish_chunk(&list, chunk, false);
 }
 
-// Only the acceleration, where nothing moves.
-ck_ListPull CK_LOOP(ck_list_pull);
-void CK_LOOP(ck_list_pull)(const struct ck_ExplicitList *list, int chunk) {
-    const int *start = list->springs.chunk_start + chunk;
-    pull_chunk(list, chunk);
-    for (long quad = start[0] / CK_QUAD; quad < start[1] / CK_QUAD; quad++) {
-        ck_Point sums[CK_QUAD];
-        sum_forces(list, quad, sums);
-        for (int i = 0; i < CK_QUAD; i++) {
-            const long place = CK_QUAD * quad + i;
-            ck_point_store(list->a + CK_POINT * place, ck_point_scale(list->gain[place] * (1 / list->dt), sums[i]));
-        }
-    }
-}
-
 // x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  v ← v + a·dt/2
 ck_ListStart CK_LOOP(ck_list_start);
 void CK_LOOP(ck_list_start)(const struct ck_ExplicitList *list, int chunk) {

@@ -9,7 +9,6 @@ ck_TouchSlide CK_LOOP(ck_touch_slide);
 ck_TouchHold CK_LOOP(ck_touch_hold);
 ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
-ck_ListPull CK_LOOP(ck_list_pull);
 ck_NearChunk CK_LOOP(ck_near_chunk);
 ck_ProjectionWave CK_LOOP(ck_projection_wave);
 ck_Peak CK_LOOP(ck_peak);
@@ -26,7 +25,6 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .touch_hold = CK_LOOP(ck_touch_hold),
     .list_start = CK_LOOP(ck_list_start),
     .list_chunk = CK_LOOP(ck_list_chunk),
-    .list_pull = CK_LOOP(ck_list_pull),
     .near_chunk = CK_LOOP(ck_near_chunk),
     .projection_wave = CK_LOOP(ck_projection_wave),
     .peak = CK_LOOP(ck_peak),
