@@ -52,7 +52,7 @@ static void add_links(ck_BulletBody &body, bool reordered) {
     btSoftBody::Material *material = soft->appendMaterial();
     std::vector<int> order(body.model->spring_count);
     std::iota(order.begin(), order.end(), 0);
-    if (reordered && ck_sweep_order(body.model, CK_PROJECT_SPRINGS, order.data())) throw std::bad_alloc();
+    if (reordered && ck_sweep_order(body.model, CK_PROJECT_SPRINGS, 1, order.data())) throw std::bad_alloc();
     for (int i : order) {
         const ck_Spring *spring = &body.model->springs[i];
         if (body.model->pinned[spring->a] && body.model->pinned[spring->b]) continue;

@@ -430,7 +430,7 @@ ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, const ck_Settings *u
     code->order = static_cast<int *>(std::malloc(sizeof(int) * static_cast<size_t>(model->spring_count) + 1));
     if (!code->order) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     std::iota(code->order, code->order + model->spring_count, 0);
-    ck_Status status = ck_sweep_order(model, CK_PROJECT_SPRINGS, code->order);
+    ck_Status status = ck_sweep_order(model, CK_PROJECT_SPRINGS, 1, code->order);
     return status ? ck_fail(error, status, "out of memory") : CK_OK;
 }
 

@@ -80,7 +80,8 @@ typedef struct ck_Engine {
     void (*contact)(const void *state, double *force);
     // How its rigid bodies are turned, [rigid_count]. NULL where the engine does not tell.
     void (*turn)(const void *state, ck_Turn *turn);
-    // A literal that a reader of the result must know, such as that a speed was clamped; NULL: nothing. May be NULL.
+    // A text, the state's own, that a reader of the result must know, such as that a speed was clamped; NULL: nothing.
+    // May be NULL.
     const char *(*remark)(const void *state);
     void (*destroy)(void *state);
     // Fills in what its program to paste needs besides the model, in units of its own, and the settings used: text,

@@ -6,33 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Sweeps that run interleaved: of a narrow cloth enough independent work for a processor that waits for each sweep's
-// last result; threads, which are to meet at few rows, and wide cloths take fewer.
-#define DEPTH 4
-#define DEPTH_WIDE 2
-
-static void run_wave(void *state, long block, int wave) {
-    const ck_ProjectedCloth *cloth = state;
-    long first = block * cloth->depth, left = cloth->sweeps - first;
-    cloth->loops->projection_wave(cloth, &(ck_Wave){first, left < cloth->depth ? (int)left : cloth->depth, wave});
-}
-
-static int depth_of(const ck_ProjectedCloth *cloth, const ck_Waves *waves) {
-    const ck_Rows *rows = &cloth->rows;
-    const int depth = ck_waves_depth(waves, cloth->sweeps, rows->rows, CK_SWEEP_LAG, 6 * sizeof(double) * rows->stride);
-    const int least = waves || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH;
-    return depth > least ? depth : least;
-}
-
-void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
-    cloth->sweeps = (long)substeps * cloth->rule.iterations;
-    cloth->depth = depth_of(cloth, waves);
-    // a block's first sweep reads the row below it as the last sweep of the block before left it
-    const int reach = CK_SWEEP_LAG * (cloth->depth - 1) + 2;
-    ck_waves_run(waves, &(ck_WaveWork){run_wave, cloth, (cloth->sweeps + cloth->depth - 1) / cloth->depth,
-                                       cloth->rows.rows + reach - 2, reach});
-}
-
 // m/s of what moved a metre in a substep.
 static double rate_of(const ck_ProjectedCloth *cloth) {
     return cloth->rule.keep / cloth->rule.dt;
@@ -82,7 +55,7 @@ static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, con
     memcpy(cloth->rest, springs->rest, sizeof cloth->rest);
     cloth->carried = rule->carry * rule->keep;
     for (int axis = 0; axis < 3; axis++) cloth->push[axis] = dt * rule->push[axis];
-    cloth->terms = rule->projection == CK_PROJECT_BARS ? CK_SWEEP_BARS : 0;
+    cloth->terms = rule->projection == CK_PROJECT_BARS ? CK_SWEEP_BARS : rule->iterations == 1 ? CK_SWEEP_LATE : 0;
     cloth->long_scale = 0.25 * rule->relaxation * (CK_LONG_BAR - 1);
     if (is_elastic)
         cloth->terms |= (springs->damping > 0 ? CK_SWEEP_DAMPED : 0) | (rule->iterations > 1 ? CK_SWEEP_REPEATED : 0);

@@ -23,6 +23,14 @@ void ck_explicit_place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     body->kind->place(body, setup);
 }
 
+void ck_explicit_pace(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    body->kind->pace(body, setup);
+}
+
+const double *ck_explicit_acceleration(const ck_Explicit *body, size_t *count) {
+    return body->kind->acceleration(body, count);
+}
+
 void ck_explicit_destroy(ck_Explicit *body) {
     if (body) body->kind->destroy(body);
 }

@@ -27,6 +27,8 @@ ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, 
 ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
 // Goes on from another state, or with other pins, of the same model.
 void ck_explicit_place(ck_Explicit *body, const ck_ExplicitSetup *setup);
+// Other steps from here on, of the same body where it is: only dt is read, and what goes with it.
+void ck_explicit_pace(ck_Explicit *body, const ck_ExplicitSetup *setup);
 // Accepts NULL.
 void ck_explicit_destroy(ck_Explicit *body);
 
@@ -55,6 +57,9 @@ void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loo
 
 // What is made of them: their velocity, and before a kick place and predicted velocity, too.
 void ck_explicit_put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
+
+// The accelerations at the end of the last call, as the layout has them, with 0 for what is not free; [count] m/s².
+const double *ck_explicit_acceleration(const ck_Explicit *body, size_t *count);
 
 // [3*n] m, m/s, at the same time.
 void ck_explicit_read(const ck_Explicit *body, double *position, double *velocity);

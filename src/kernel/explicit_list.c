@@ -127,17 +127,30 @@ static int terms_of(const ck_Model *model) {
     return terms;
 }
 
+static void pace(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    list->dt = setup->dt;
+    for (int i = 0; i < setup->model->particle_count; i++)
+        list->gain[list->springs.place[i]] = setup->dt * setup->inverse_mass[i];
+}
+
+static const double *acceleration(const ck_Explicit *body, size_t *count) {
+    const ck_ExplicitList *list = (const ck_ExplicitList *)body;
+    *count = CK_POINT * (size_t)list->springs.places;
+    return list->a;
+}
+
 static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
     const ck_Model *model = setup->model;
     for (int i = 0; i < model->particle_count; i++) {
         const int at = list->springs.place[i];
         double *load = list->load + CK_POINT * (long)at;
-        list->gain[at] = setup->dt * setup->inverse_mass[i];
         list->resistance[at] = model->drag * model->mass[i];
         ck_model_field(model, i, load);
         for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
     }
+    pace(body, setup);
     seat(list, setup->position, setup->velocity);
     // where it is, and the acceleration there: what a kick gives that goes nowhere
     kick(body);
@@ -179,4 +192,5 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     return CK_OK;
 }
 
-const ck_ExplicitKind ck_explicit_list = {create, place, destroy, step, drift, kick, take, put, read_state};
+const ck_ExplicitKind ck_explicit_list = {create, place, pace, acceleration, destroy,   step,
+                                          drift,  kick,  take, put,          read_state};

@@ -115,15 +115,26 @@ static int terms_of(const ck_Model *model, const ck_RowSprings *springs) {
     return terms & CK_ROW_BENT ? terms | CK_ROW_DAMPED | CK_ROW_DRAGGED : terms;
 }
 
+static void pace(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    const int columns = setup->model->columns;
+    cloth->dt = setup->dt;
+    for (int i = 0; i < setup->model->particle_count; i++)
+        cloth->gain[ck_rows_at(&cloth->rows, i / columns, i % columns).single] = setup->dt * setup->inverse_mass[i];
+}
+
+static const double *acceleration(const ck_Explicit *body, size_t *count) {
+    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
+    *count = 3 * (size_t)(cloth->rows.rows * cloth->rows.stride);
+    return cloth->a;
+}
+
 // Where it is, and the acceleration there: what a pass gives that goes nowhere.
 static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    const ck_Model *model = setup->model;
     ck_rows_load(&cloth->rows, cloth->x, setup->position);
     ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity);
-    for (int i = 0; i < model->particle_count; i++)
-        cloth->gain[ck_rows_at(&cloth->rows, i / model->columns, i % model->columns).single] =
-            setup->dt * setup->inverse_mass[i];
+    pace(body, setup);
     kick(body);
     ck_rows_load(&cloth->rows, cloth->v, setup->velocity);
 }
@@ -163,4 +174,5 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     return CK_OK;
 }
 
-const ck_ExplicitKind ck_explicit_rows = {create, place, destroy, step, drift, kick, take, put, read_state};
+const ck_ExplicitKind ck_explicit_rows = {create, place, pace, acceleration, destroy,   step,
+                                          drift,  kick,  take, put,          read_state};

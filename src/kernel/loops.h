@@ -11,7 +11,7 @@
 struct ck_ExplicitCloth;
 struct ck_ExplicitList;
 struct ck_ProjectedCloth;
-struct ck_Wave;
+struct ck_Visits;
 
 // A row's way to the first substep's forces; see spring_loop.h.
 typedef void ck_ExplicitStart(const struct ck_ExplicitCloth *cloth, int row);
@@ -59,7 +59,7 @@ typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, bool ad
 typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
                           uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
-typedef void ck_ProjectionWave(const struct ck_ProjectedCloth *cloth, const struct ck_Wave *wave);
+typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const struct ck_Visits *visits);
 // Products with a sum each, as many as it can a second; returns how many there were.
 typedef long ck_Peak(long rounds, double *result);
 
@@ -75,7 +75,7 @@ typedef struct ck_Loops {
     ck_ListStart *list_start;
     ck_ListChunk *list_chunk;
     ck_NearChunk *near_chunk;
-    ck_ProjectionWave *projection_wave;
+    ck_ProjectionVisits *projection_visits;
     ck_Peak *peak;
 } ck_Loops;
 

@@ -15,28 +15,42 @@ static int compare_visits(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-// When a sweep comes to a spring: by the row it is at, colour, vector and lane.
-static long when_visited(const ck_Rows *rows, ck_Projection projection, const ck_Spring *spring) {
-    int row = spring->a / rows->columns, right = spring->b % rows->columns - spring->a % rows->columns;
-    int column = spring->a % rows->columns - (right < 0), vector = column % rows->span;
-    bool is_late = projection == CK_PROJECT_SPRINGS;
-    ck_Colour colour = is_late ? CK_DOWN_LATE : CK_DOWN;
-    if (spring->kind == CK_SHEAR) colour = right > 0 ? CK_DOWN_RIGHT : CK_DOWN_LEFT;
-    if (spring->b / rows->columns == row) colour = vector + 1 == rows->span ? CK_ALONG_LAST : vector % 2;
-    // the colours' numbers have the order of either sweep
-    return ((row + (colour == CK_DOWN_LATE)) * CK_COLOUR_COUNT + colour) * rows->stride +
-           ck_rows_at(rows, 0, column).single;
+// How a sweep goes over rows.
+typedef struct Way {
+    ck_Rows rows;
+    ck_Projection projection;
+    bool goes_down; // else from both edges to the middle
+} Way;
+
+// A row's turn; see sweep_schedule.c.
+static long turn_of(const Way *way, int row) {
+    const int rows = way->rows.rows;
+    if (way->goes_down) return 2L * row;
+    return row < (rows - 1) / 2 ? 2L * row : 2L * (rows - 1 - row) + 1;
 }
 
-ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, int *order) {
+// When a sweep comes to a spring: by the turn of the row it is at, colour, vector and lane.
+static long when_visited(const Way *way, const ck_Spring *spring) {
+    const ck_Rows *rows = &way->rows;
+    int row = spring->a / rows->columns, right = spring->b % rows->columns - spring->a % rows->columns;
+    int column = spring->a % rows->columns - (right < 0), vector = column % rows->span;
+    bool are_bars = way->projection == CK_PROJECT_BARS, is_late = way->goes_down && !are_bars;
+    // the colours' numbers have the order of either sweep
+    ck_Colour colour = are_bars ? CK_DOWN : CK_DOWN_LATE;
+    if (spring->kind == CK_SHEAR) colour = right > 0 ? CK_DOWN_RIGHT : CK_DOWN_LEFT;
+    if (spring->b / rows->columns == row) colour = vector + 1 == rows->span ? CK_ALONG_LAST : vector % 2;
+    const long turn = turn_of(way, row + (is_late && colour == CK_DOWN_LATE));
+    return (turn * CK_COLOUR_COUNT + colour) * rows->stride + ck_rows_at(rows, 0, column).single;
+}
+
+ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order) {
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
     if (!ck_projection_fits(model, &springs)) return CK_OK;
-    const ck_Rows rows = ck_rows_of(model);
+    const Way way = {ck_rows_of(model), projection, sweeps == 1};
     Visit *visits = malloc(sizeof *visits * (size_t)model->spring_count);
     if (!visits) return CK_NO_MEMORY;
-    for (int i = 0; i < model->spring_count; i++)
-        visits[i] = (Visit){when_visited(&rows, projection, &model->springs[i]), i};
+    for (int i = 0; i < model->spring_count; i++) visits[i] = (Visit){when_visited(&way, &model->springs[i]), i};
     qsort(visits, (size_t)model->spring_count, sizeof *visits, compare_visits);
     for (int i = 0; i < model->spring_count; i++) order[i] = visits[i].spring;
     free(visits);

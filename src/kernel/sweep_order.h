@@ -14,9 +14,16 @@ typedef enum ck_Projection {
     CK_PROJECT_SPRINGS // Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃) along the direction now (XPBD)
 } ck_Projection;
 
-// The springs of a model in the order in which a native sweep corrects them, [spring_count]: kernel_projection's where
-// it takes the model, else the model's. Errors: CK_NO_MEMORY.
-ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, int *order);
+// The springs of a model in the order in which a native sweep, of so many a substep, corrects them, [spring_count]:
+// that of constraint_kernel.h where it takes the model, else the model's. Errors: CK_NO_MEMORY.
+ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order);
+
+// True where a substep's sweep goes through that order backwards: of several, the second half. Sweeps and their
+// transposes in turn act as the gradient of something; those in one order only push in circles, too, and a sheet whose
+// bars are more than its freedoms takes energy out of that, and shakes for ever.
+static inline bool ck_sweep_is_turned(uint32_t sweep, uint32_t sweeps) {
+    return sweep >= sweeps - sweeps / 2;
+}
 
 #ifdef __cplusplus
 }

@@ -32,6 +32,7 @@ typedef struct Worker {
 struct ck_Waves {
     int threads, parts; // parts: threads that have work in this job
     ck_WaveWork work;
+    const ck_HalvesWork *halves; // NULL: the job is of waves
     bool stops;
     Worker workers[]; // the first is the caller
 };
@@ -63,6 +64,23 @@ static void run_part(ck_Waves *waves, int part) {
     }
 }
 
+// A step tells how many are done before it. A half that waits for the other has told so.
+static void run_half(ck_Waves *waves, int half) {
+    const ck_HalvesWork work = *waves->halves;
+    Worker *self = &waves->workers[half], *other = &waves->workers[1 - half];
+    bool met = false;
+    for (long step = 0; step < work.steps; step++) {
+        const bool meet = work.meet(work.state, step);
+        if (meet || met) {
+            atomic_store_explicit(&self->done, step, memory_order_release);
+            wait_for(other, step);
+        }
+        work.run(work.state, step, half == 0, half == 1);
+        met = meet;
+    }
+    atomic_store_explicit(&self->done, work.steps, memory_order_release);
+}
+
 static void call(Worker *worker) {
     if (atomic_exchange(&worker->call, CALLED) == ASLEEP) sem_post(&worker->wake);
 }
@@ -80,7 +98,10 @@ static void *serve(void *argument) {
     for (;;) {
         wait_for_call(worker);
         if (worker->waves->stops) return NULL;
-        run_part(worker->waves, worker->index);
+        if (worker->waves->halves)
+            run_half(worker->waves, worker->index);
+        else
+            run_part(worker->waves, worker->index);
     }
 }
 
@@ -172,6 +193,7 @@ void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
         return;
     }
     waves->work = *work;
+    waves->halves = NULL;
     waves->parts = parts;
     for (int i = 0; i < parts; i++) atomic_store(&waves->workers[i].done, 0);
     for (int i = 1; i < parts; i++) call(&waves->workers[i]);
@@ -180,4 +202,16 @@ void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
         const int end = part_start(work, parts, i + 1);
         wait_for(&waves->workers[i], (work->blocks - 1) * work->waves + end);
     }
+}
+
+void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work) {
+    if (!waves) {
+        for (long step = 0; step < work->steps; step++) work->run(work->state, step, true, true);
+        return;
+    }
+    waves->halves = work;
+    for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
+    call(&waves->workers[1]);
+    run_half(waves, 0);
+    wait_for(&waves->workers[1], work->steps);
 }

@@ -8,6 +8,7 @@
 
 #include "status.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct ck_WaveWork {
@@ -41,6 +42,17 @@ typedef struct ck_Passes {
 } ck_Passes;
 
 void ck_passes_run(ck_Waves *waves, const ck_Passes *passes);
+
+// Two halves of a job that go through the same steps, each by itself but where they meet.
+typedef struct ck_HalvesWork {
+    void (*run)(void *state, long step, bool runs_first, bool runs_second);
+    bool (*meet)(void *state, long step); // such a step and the one after it need all before them of both halves
+    void *state;
+    long steps;
+} ck_HalvesWork;
+
+// Returns when all is done, by one thread or by two.
+void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work);
 
 // Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads. Cost: some atomic
 // stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1

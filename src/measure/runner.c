@@ -18,8 +18,8 @@ typedef struct Report {
     ck_Ledger ledger;
     int frame_count; // complete frames, the start among them
     double cpu, worst_step;
-    bool is_cut;        // by the caller's patience
-    const char *remark; // a literal of the engine's, or NULL
+    bool is_cut;      // by the caller's patience
+    char remark[240]; // the engine's own, or empty
 } Report;
 
 typedef struct Job {
@@ -91,7 +91,8 @@ static void measure(void *context) {
         if (is_too_slow(job)) report->is_cut = true;
         if (report->is_cut) break;
     }
-    if (engine->remark) report->remark = engine->remark(session.state);
+    const char *remark = engine->remark ? engine->remark(session.state) : NULL;
+    snprintf(report->remark, sizeof report->remark, "%s", remark ? remark : "");
     ck_session_end(&session);
 }
 
@@ -149,7 +150,7 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
     run->trajectory.frame_count = report->frame_count;
     run->measured_cpu = report->cpu;
     run->peak_rss_bytes = child->peak_rss_bytes;
-    run->remark = report->remark;
+    memcpy(run->remark, report->remark, sizeof run->remark);
     run->status = status_of_child[child->end];
     double time = fmax(0, report->frame_count - 1) * run->model->step;
     if (report->is_cut || (child->end == CK_CHILD_TIMED_OUT && limits->seconds < allowed)) {

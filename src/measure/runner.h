@@ -25,8 +25,8 @@ typedef struct ck_Run {
     const ck_Engine *engine;
     ck_Settings wanted, used;
     ck_RunStatus status;
-    char reason[600];   // never empty: also an ok run says why it is
-    const char *remark; // what the engine itself says of the run, a literal; NULL: nothing
+    char reason[600]; // never empty: also an ok run says why it is
+    char remark[240]; // what the engine itself says of the run; empty: nothing
     ck_Ledger ledger;
     ck_Trajectory trajectory;
     double measured_cpu; // s of the measured pass

@@ -76,7 +76,7 @@ static void note_contact(ck_Run *run, const ck_Reference *reference) {
 
 static void note_remark(ck_Run *run) {
     size_t used = strlen(run->reason);
-    if (run->remark) snprintf(run->reason + used, sizeof run->reason - used, "; %s", run->remark);
+    if (run->remark[0]) snprintf(run->reason + used, sizeof run->reason - used, "; %s", run->remark);
 }
 
 void ck_verdict(ck_Run *run, const ck_Reference *reference) {

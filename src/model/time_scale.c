@@ -38,14 +38,15 @@ static double weight_ever(const ck_Model *model, int particle) {
 }
 
 // The largest 2·w_i·λ_max(Σ value·n·nᵀ) over a particle's springs, of their stiffness or their damping.
-static ck_Status largest_rate(const ck_Model *model, double (*value)(const ck_Spring *spring), double *largest) {
+static ck_Status largest_rate(const ck_Model *model, const double *position, double (*value)(const ck_Spring *spring),
+                              double *largest) {
     *largest = 0;
     double(*sums)[6] = calloc((size_t)model->particle_count, sizeof *sums);
     if (!sums) return CK_NO_MEMORY;
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
         double n[3];
-        ck_subtract(n, model->position + 3 * spring->b, model->position + 3 * spring->a);
+        ck_subtract(n, position + 3 * spring->b, position + 3 * spring->a);
         double length = ck_length(n);
         if (!(length > 0)) continue;
         for (int axis = 0; axis < 3; axis++) n[axis] /= length;
@@ -67,8 +68,12 @@ static double damping_of(const ck_Spring *spring) {
 }
 
 ck_Status ck_stability_frequency(const ck_Model *model, double *frequency) {
+    return ck_stability_frequency_at(model, model->position, frequency);
+}
+
+ck_Status ck_stability_frequency_at(const ck_Model *model, const double *position, double *frequency) {
     double bending = 0;
-    ck_Status status = largest_rate(model, stiffness_of, frequency);
+    ck_Status status = largest_rate(model, position, stiffness_of, frequency);
     if (!status && model->hinge_count) status = ck_hinges_rate(model, &bending);
     *frequency = sqrt(*frequency + bending);
     return status;
@@ -78,7 +83,7 @@ double ck_stability_damping_rate(const ck_Model *model) {
     double rate;
     if (!(model->terms & CK_TERM_DAMPING)) return 0;
     // without memory the bound that no directions lower
-    if (!largest_rate(model, damping_of, &rate)) return rate;
+    if (!largest_rate(model, model->position, damping_of, &rate)) return rate;
     for (int i = 0; i < model->spring_count; i++)
         rate = fmax(rate, 4 * model->springs[i].damping * model->spring_count * ck_stability_lightness(model));
     return rate;

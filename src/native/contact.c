@@ -348,8 +348,21 @@ bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double
     return contact->motion ? impacts(contact, x, v, a, true) : impacts(contact, x, v, a, false);
 }
 
+// Takes of a way along a surface what friction holds. Along where it is now: what was held before, elsewhere on a ball,
+// does not lead into it.
+static void hold(ck_Pressed *pressed, double friction, const double *along, const double *normal, double *x) {
+    double total[3], change[3], sliding[3];
+    ck_subtract(total, pressed->held, along);
+    const double wanted = ck_length(total), most = friction * pressed->depth;
+    for (int axis = 0; axis < 3; axis++)
+        change[axis] = total[axis] * (wanted > most ? most / wanted : 1) - pressed->held[axis];
+    ck_tangential(sliding, change, normal);
+    ck_add_scaled(x, 1, sliding);
+    ck_add_scaled(pressed->held, 1, sliding);
+}
+
 // One round of ck_contact_project; false where nothing was inside.
-static bool push_out(ck_Contact *contact, double mass, const double *start, double *x) {
+static bool push_out(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x) {
     bool pushed = false;
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
@@ -357,15 +370,18 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, doub
         double normal[3], along[3], way[3], before[3], seen[3] = {x[0], x[1], x[2]};
         if (motion) ck_add_scaled(seen, -1, motion->end);
         const double gap = ck_collider_gap(collider, seen, normal);
-        if (!(gap < 0)) continue;
-        pushed = true;
+        // what was pushed out by as much may still be held where it was lifted a little
+        if (!(gap < pressed->depth)) continue;
         memcpy(before, x, sizeof before);
-        ck_add_scaled(x, -gap, normal);
+        if (gap < 0) {
+            pushed = true;
+            pressed->depth -= gap;
+            ck_add_scaled(x, -gap, normal);
+        }
         ck_subtract(way, x, start);
         if (motion) ck_add_scaled(way, -1, motion->way); // less the collider's own
         ck_tangential(along, way, normal);
-        double sliding = ck_length(along);
-        if (sliding > 0) ck_add_scaled(x, -fmin(1, collider->friction * -gap / sliding), along);
+        hold(pressed, collider->friction, along, normal, x);
         ck_subtract(way, x, before);
         ck_add_scaled(contact->impulse, mass / contact->dt, way);
     }
@@ -375,8 +391,8 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, doub
 // Between several colliders, one pushes into another.
 #define PUSH_ROUNDS 16
 
-void ck_contact_project(ck_Contact *contact, double mass, const double *start, double *x) {
+void ck_contact_project(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x) {
     int rounds = contact->model->collider_count > 1 ? PUSH_ROUNDS : 1;
-    while (rounds-- && push_out(contact, mass, start, x))
+    while (rounds-- && push_out(contact, mass, start, pressed, x))
         ;
 }

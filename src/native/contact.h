@@ -46,10 +46,15 @@ void ck_contact_advance(ck_Contact *contact, double mass, double *x, double *v, 
 // in contact.
 void ck_contact_filter(const ck_Contact *contact, const double *x, const double *v, const double *a, double *left);
 
-// For methods that correct positions. Moves a particle that is inside a collider out of it, and takes from its way
-// since start along the surface what friction holds: at most μ times the way it was pushed out. Cost: one gap a
-// collider.
-void ck_contact_project(ck_Contact *contact, double mass, const double *start, double *x);
+// How far a particle was pushed out of colliders in a substep so far, m, and what friction has taken of its way.
+typedef struct ck_Pressed {
+    double depth, held[3];
+} ck_Pressed;
+
+// For methods that correct positions, once a sweep. Moves a particle that is inside a collider out of it, and takes
+// from its way since start along the surface what friction holds: in all sweeps at most μ times what it was pushed out
+// in all; a sweep that is held to its own push alone lets creep what others pull. Cost: one gap a collider.
+void ck_contact_project(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x);
 
 // True where a particle on its way from x with speed v under a, as in ck_contact_advance, hits a collider faster than
 // what counts as rest.

@@ -38,7 +38,9 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
     if (!status) status = ck_rigid_contact_create(&native->rigid, model, native->dt, error);
     if (!status) status = ck_waves_create(&native->waves, (int)used->threads, error);
     native->origin = native->contact ? calloc(vectors, sizeof(double)) : native->start;
-    if (!native->origin && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (native->contact) native->pressed = calloc((size_t)model->particle_count, sizeof *native->pressed);
+    if ((!native->origin || (native->contact && !native->pressed)) && !status)
+        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (status) {
         ck_native_destroy(native);
         return status;
@@ -56,6 +58,7 @@ void ck_native_destroy(void *state) {
     if (!native) return;
     if (native->contact) free(native->origin);
     free(native->contact);
+    free(native->pressed);
     ck_rigid_contact_destroy(native->rigid);
     ck_waves_destroy(native->waves);
     ck_projection_destroy(native->cloth);
@@ -83,9 +86,19 @@ void ck_native_read(const void *state, double *position, double *velocity) {
     memcpy(velocity, native->velocity, 3 * sizeof(double) * (size_t)native->model->particle_count);
 }
 
+double ck_native_time(const ck_Native *native) {
+    return native->begun + (double)native->done * native->dt;
+}
+
 void ck_native_pace(void *state, double duration) {
     ck_Native *native = state;
-    native->dt = duration / native->substeps;
+    ck_native_set_step(native, duration / native->substeps);
+}
+
+void ck_native_set_step(ck_Native *native, double dt) {
+    native->begun = ck_native_time(native);
+    native->done = 0;
+    native->dt = dt;
     if (native->contact) native->contact->dt = native->dt;
     if (native->rigid) ck_rigid_contact_pace(native->rigid, native->dt);
 }
@@ -97,20 +110,20 @@ void ck_native_start_frame(ck_Native *native) {
 void ck_native_start_substep(ck_Native *native) {
     size_t bytes = 3 * sizeof(double) * (size_t)native->model->particle_count;
     memcpy(native->start, native->position, bytes);
-    if (native->contact && native->contact->motion)
-        ck_contact_follow(native->contact, (double)native->done * native->dt);
-    if (native->contact) memcpy(native->origin, native->start, bytes);
+    if (native->contact && native->contact->motion) ck_contact_follow(native->contact, ck_native_time(native));
+    if (!native->contact) return;
+    memcpy(native->origin, native->start, bytes);
+    memset(native->pressed, 0, sizeof *native->pressed * (size_t)native->model->particle_count);
 }
 
 void ck_native_drive(ck_Native *native) {
     native->done++;
-    if (native->model->driven_count)
-        ck_driven_place(native->model, (double)native->done * native->dt, -1, native->position, NULL);
+    if (native->model->driven_count) ck_driven_place(native->model, ck_native_time(native), -1, native->position, NULL);
 }
 
 void ck_native_drive_speed(ck_Native *native) {
     if (!native->model->driven_count) return;
-    const double time = (double)native->done * native->dt;
+    const double time = ck_native_time(native);
     ck_driven_place(native->model, time, -1, native->position, native->velocity);
     ck_driven_place(native->model, time, -1, native->position, native->other_velocity);
 }
@@ -148,7 +161,7 @@ void ck_native_project(ck_Native *native) {
     if (native->rigid) ck_rigid_contact_project(native->rigid, native);
     for (int i = 0; i < ck_model_cloth_count(native->model) && native->contact; i++)
         if (native->inverse_mass[i] > 0)
-            ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i,
+            ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i, &native->pressed[i],
                                native->position + 3 * i);
 }
 
@@ -161,7 +174,7 @@ void ck_native_meet(ck_Native *native,
         memcpy(rigid->now + 3 * i, native->velocity + 3 * i, 3 * sizeof(double));
         if (native->inverse_mass[i] > 0) speeds(native, i, rigid->drift + 3 * i, rigid->now + 3 * i);
     }
-    ck_rigid_contact_meet(rigid, native, (double)native->done * native->dt);
+    ck_rigid_contact_meet(rigid, native, ck_native_time(native));
 }
 
 void ck_native_turn(const void *state, ck_Turn *turn) {

@@ -16,7 +16,8 @@ typedef struct ck_Native {
     double last; // s, the one before: another where steps are uneven
     ck_Settings used;
     uint32_t substeps, iterations;
-    uint64_t done;                   // substeps
+    double begun;                    // s, since when substeps are of this dt
+    uint64_t done;                   // substeps since then
     double *position, *velocity;     // [3*n]
     double *start;                   // [3*n] positions at the start of the substep
     double *origin;                  // [3*n] what a substep's velocity is measured from: start, but for impacts
@@ -27,6 +28,7 @@ typedef struct ck_Native {
     double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
     double *bending;                 // [3*hinges] XPBD's multipliers of hinges, N·s²; NULL without
     ck_Contact *contact;             // NULL without colliders
+    ck_Pressed *pressed;             // [n] in the substep; NULL without
     ck_RigidContact *rigid;          // NULL without rigid bodies
     struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
@@ -62,7 +64,11 @@ void ck_native_start_substep(ck_Native *native);
 void ck_native_drive(ck_Native *native);
 void ck_native_drive_speed(ck_Native *native);
 
-// Sets how long the substeps of the next steps are, by what a step takes, s.
+// s, of the scene: where its pins and colliders that move are.
+double ck_native_time(const ck_Native *native);
+
+// Sets how long the substeps of the next steps are, s, or how long the steps.
+void ck_native_set_step(ck_Native *native, double dt);
 void ck_native_pace(void *state, double duration);
 
 // Lets a pinned particle go, with the speed it has.

@@ -14,10 +14,10 @@
 // But for long bars, d·d_start is taken to be L²: rows of vectors are spared a division by it. A bar that turned by
 // more than 66° in one substep is projected along itself instead; rows ask that only once a bar was long. Cost: one
 // pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
-static void sweep(ck_Native *native) {
+static void sweep(ck_Native *native, bool is_turned) {
     const ck_Model *model = native->model;
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *bar = &model->springs[i];
+    for (int k = 0; k < model->spring_count; k++) {
+        const ck_Spring *bar = &model->springs[is_turned ? model->spring_count - 1 - k : k];
         double weight_a = native->inverse_mass[bar->a], weight_b = native->inverse_mass[bar->b];
         if (weight_a + weight_b == 0) continue;
         double *a = native->position + 3 * bar->a, *b = native->position + 3 * bar->b;
@@ -35,7 +35,7 @@ static void sweep(ck_Native *native) {
 
 static bool relax(ck_Native *native) {
     for (uint32_t i = 0; i < native->iterations; i++) {
-        sweep(native);
+        sweep(native, ck_sweep_is_turned(i, native->iterations));
         ck_native_project(native);
     }
     return true;

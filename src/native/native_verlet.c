@@ -7,6 +7,7 @@
 #include "time_scale.h"
 #include "vector.h"
 #include "verlet_contact.h"
+#include "verlet_pace.h"
 #include "wind.h"
 
 #include <stdlib.h>
@@ -26,7 +27,7 @@ static void accelerate(const ck_Native *native, double *acceleration) {
 // Where a pin's speed jumps between two substeps, dampers pull otherwise from then on: so the order stays two.
 static void follow_jump(ck_Native *native) {
     const ck_Model *model = native->model;
-    const double time = (double)native->done * native->dt;
+    const double time = ck_native_time(native);
     if (!model->driven_count || !(model->terms & (CK_TERM_DAMPING | CK_TERM_WIND)) || !ck_driven_jump(model, time))
         return;
     memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
@@ -61,7 +62,7 @@ static void speeds(const ck_Native *native, int particle, double *drift, double 
 static void substep_with_contact(ck_Native *native) {
     double *x = native->position, *v = native->velocity, *predicted = native->other_velocity, left[3];
     const int cloth = ck_model_cloth_count(native->model);
-    if (native->contact->motion) ck_contact_follow(native->contact, (double)native->done * native->dt);
+    if (native->contact->motion) ck_contact_follow(native->contact, ck_native_time(native));
     native->contact->elapsed = native->dt;
     for (int i = 0; i < native->model->particle_count; i++) {
         double *a = native->acceleration + 3 * i;
@@ -119,7 +120,7 @@ static void substep(ck_Native *native) {
 static void substep_with_bodies(ck_Native *native) {
     ck_native_meet(native, speeds);
     substep(native);
-    ck_rigid_contact_settle(native->rigid, native, (double)native->done * native->dt);
+    ck_rigid_contact_settle(native->rigid, native, ck_native_time(native));
 }
 
 // Time step: half of the stability bound, so that a cloth that folds (up to √2 in ω) stays inside;
@@ -149,12 +150,15 @@ static ck_Status translate(const ck_Model *model, const ck_Settings *wanted, ck_
 typedef struct Verlet {
     ck_Native *native;
     ck_VerletContact *contact; // of a body in the kernel; NULL without colliders
+    ck_VerletPace *pace;       // NULL: all steps are alike
+    double duration;           // s, of a frame
     bool is_whole;             // all of it is the kernel's
 } Verlet;
 
 static void destroy(void *state) {
     Verlet *verlet = state;
     ck_verlet_contact_destroy(verlet->contact);
+    ck_verlet_pace_destroy(verlet->pace);
     ck_native_destroy(verlet->native);
     free(verlet);
 }
@@ -190,6 +194,8 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     if (!verlet) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     status = ck_native_create(&verlet->native, model, used, error);
     if (!status) status = lay_out(verlet, error);
+    if (!status) status = ck_verlet_pace_create(&verlet->pace, verlet->native, error);
+    verlet->duration = model->step;
     if (status)
         destroy(verlet);
     else
@@ -205,22 +211,64 @@ static void release(void *state, int particle) {
     start(verlet);
 }
 
+static void advance(const Verlet *verlet, uint32_t substeps) {
+    ck_Native *native = verlet->native;
+    void (*const alone)(ck_Native *) = native->rigid ? substep_with_bodies : substep;
+    if (verlet->is_whole && !native->contact)
+        ck_explicit_step(native->springs, substeps, native->waves);
+    else if (verlet->is_whole)
+        for (uint32_t i = 0; i < substeps; i++) ck_verlet_contact_substep(verlet->contact, native, native->springs);
+    else
+        for (uint32_t i = 0; i < substeps; i++) alone(native);
+}
+
+static void set_step(const Verlet *verlet, double dt) {
+    ck_native_set_step(verlet->native, dt);
+    const ck_ExplicitSetup setup = setup_of(verlet->native);
+    if (verlet->is_whole) ck_explicit_pace(verlet->native->springs, &setup);
+}
+
+static const double *accelerations(const Verlet *verlet, size_t *count) {
+    if (verlet->is_whole) return ck_explicit_acceleration(verlet->native->springs, count);
+    *count = 3 * (size_t)verlet->native->model->particle_count;
+    return verlet->native->acceleration;
+}
+
+// A frame in steps that adapt. Without memory for the look they stay as they are.
+static void advance_adaptively(const Verlet *verlet) {
+    double left = verlet->duration, dt;
+    ck_verlet_pace_look(verlet->pace, verlet->native);
+    while (left > 1e-9 * verlet->duration) {
+        size_t count;
+        const uint32_t together = ck_verlet_pace_next(verlet->pace, left, &dt);
+        set_step(verlet, dt);
+        advance(verlet, together - 1);
+        const double *a = accelerations(verlet, &count);
+        ck_verlet_pace_before(verlet->pace, a, count);
+        advance(verlet, 1);
+        ck_verlet_pace_after(verlet->pace, dt, a, count);
+        left -= together * dt;
+        if (verlet->is_whole)
+            ck_explicit_read(verlet->native->springs, verlet->native->position, verlet->native->velocity);
+        if (!ck_native_is_finite(verlet->native)) return;
+    }
+}
+
 static ck_StepResult step(void *state) {
-    Verlet *verlet = state;
+    const Verlet *verlet = state;
     ck_Native *native = verlet->native;
     ck_native_start_frame(native);
-    if (verlet->is_whole) {
-        if (native->contact)
-            for (uint32_t i = 0; i < native->substeps; i++)
-                ck_verlet_contact_substep(verlet->contact, native, native->springs);
-        else
-            ck_explicit_step(native->springs, native->substeps, native->waves);
-        ck_explicit_read(native->springs, native->position, native->velocity);
-    } else {
-        void (*const advance)(ck_Native *) = native->rigid ? substep_with_bodies : substep;
-        for (uint32_t i = 0; i < native->substeps; i++) advance(native);
-    }
+    if (verlet->pace)
+        advance_adaptively(verlet);
+    else
+        advance(verlet, native->substeps);
+    if (verlet->is_whole) ck_explicit_read(native->springs, native->position, native->velocity);
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
+}
+
+static const char *remark(const void *state) {
+    ck_VerletPace *pace = ((const Verlet *)state)->pace;
+    return pace ? ck_verlet_pace_tell(pace) : NULL;
 }
 
 static void read_state(const void *state, double *position, double *velocity) {
@@ -228,7 +276,9 @@ static void read_state(const void *state, double *position, double *velocity) {
 }
 
 static void pace(void *state, double duration) {
-    ck_native_pace(((Verlet *)state)->native, duration);
+    Verlet *verlet = state;
+    verlet->duration = duration;
+    if (!verlet->pace) ck_native_pace(verlet->native, duration);
 }
 
 static void read_turn(const void *state, ck_Turn *turn) {
@@ -264,6 +314,14 @@ static const ck_Setting settings[] = {
      .unit = "1",
      .rule = "the processor's widest",
      .help = "doubles of an instruction at most"},
+    {.name = "tolerance",
+     .slot = CK_OWN + CK_NATIVE_TOLERANCE,
+     .least = 1e-12,
+     .most = 1,
+     .unit = "1/s",
+     .rule = "none: all substeps are alike",
+     .help = "error a second, over the size, that a substep may make; substeps then follow it and what is stable",
+     .leaves_theory = true},
     {0},
 };
 
@@ -283,6 +341,7 @@ const ck_Engine ck_native_verlet = {
     .release = release,
     .contact = read_contact,
     .turn = read_turn,
+    .remark = remark,
     .destroy = destroy,
 };
 

@@ -12,9 +12,10 @@
 // One Gauss–Seidel sweep: Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃), α̃ = 1/(k·dt²), γ̃ = c/(k·dt).
 // A rigid bar has α̃ = γ̃ = 0. Cost: one pass over springs.
 // Source: Macklin, Müller, Chentanez 2016, eq. 18 and 26.
-static void sweep(ck_Native *native) {
+static void sweep(ck_Native *native, bool is_turned) {
     const ck_Model *model = native->model;
-    for (int i = 0; i < model->spring_count; i++) {
+    for (int k = 0; k < model->spring_count; k++) {
+        const int i = is_turned ? model->spring_count - 1 - k : k;
         const ck_Spring *spring = &model->springs[i];
         double weight_a = native->inverse_mass[spring->a], weight_b = native->inverse_mass[spring->b];
         if (weight_a + weight_b == 0) continue;
@@ -105,7 +106,7 @@ static void substep(ck_Native *native) {
     }
     ck_native_drive(native);
     for (uint32_t i = 0; i < native->iterations; i++) {
-        sweep(native);
+        sweep(native, ck_sweep_is_turned(i, native->iterations));
         if (native->bending) sweep_hinges(native);
         ck_native_project(native);
     }

@@ -125,7 +125,7 @@ void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Expl
     const ck_Model *model = native->model;
     const ck_Loops *loops = ck_native_loops(native);
     ck_Loose *loose = &own->loose;
-    if (contact->motion) ck_contact_follow(contact, (double)native->done * native->dt);
+    if (contact->motion) ck_contact_follow(contact, ck_native_time(native));
     if (contact->motion || !native->done) set_surfaces(own->surfaces, contact);
     const ck_Touched touch = {own->surfaces, model->collider_count, native->dt, contact->slack};
     ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose);

@@ -50,7 +50,7 @@ static void show(ck_Arguments *arguments, const ck_Comparison *comparison) {
     ck_Answer *answer = &arguments->answer;
     ck_answer_summary(arguments, comparison);
     for (int i = 0; i < comparison->run_count; i++)
-        if (comparison->runs[i].engine->outside && comparison->runs[i].remark)
+        if (comparison->runs[i].engine->outside && comparison->runs[i].remark[0])
             ck_answer_line(answer, CK_ANSWER_NOTE, "%s: %s", comparison->runs[i].engine->name,
                            comparison->runs[i].remark);
     for (int i = 0; i < comparison->run_count; i++)

@@ -9,15 +9,11 @@ enum {
     DAMPED = CK_SWEEP_DAMPED,
     REPEATED = CK_SWEEP_REPEATED,
     BARS = CK_SWEEP_BARS,
+    LATE = CK_SWEEP_LATE,
+    TURNED = CK_SWEEP_TURNED,
     HELD = CK_SWEEP_HELD,
     FAR = CK_SWEEP_FAR
 };
-
-// A sweep at a row.
-typedef struct RowSweep {
-    int row;
-    long sweep;
-} RowSweep;
 
 // A vector of springs.
 typedef struct Ends {
@@ -92,12 +88,12 @@ static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth
 // division takes as long as all the rest, and the next sweep mends what that leaves. Where a bar turned by so much that
 // there is none of its length along d_start, that makes it long; so does the flight that turned it, mostly at once. A
 // row with a long bar is looked at bar by bar in the substep's further sweeps.
-CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, RowSweep at,
+CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, const ck_Visit *at,
                            const int terms) {
     const ck_Lanes3 now = span_of(cloth->x, ends);
     const ck_Lanes scale = scale_of(springs, ck_lanes3_dot(now, now));
     if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0)) {
-        cloth->far_from[at.row] = at.sweep + 1;
+        cloth->far_from[at->row] = at->sweep + 1;
         project_far(cloth, *ends, *springs, (terms & HELD) != 0, false);
     } else
         move_bars(cloth, ends, scale, span_of(cloth->start, ends), terms);
@@ -162,8 +158,8 @@ CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, ck_Colour colour, i
     return (Vectors){0, 1, is_there ? span : 0};
 }
 
-CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe, RowSweep at,
-                              const int terms) {
+CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe,
+                              const ck_Visit *at, const int terms) {
     for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
         const Ends part = ends_after(*ends, lane, lane);
         const Springs springs = springs_of(stripe, lane);
@@ -177,21 +173,22 @@ CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, 
 }
 
 // The last vector, whose right is the first, comes by itself.
-CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, RowSweep at, const int terms) {
+CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, const ck_Visit *at, const int terms) {
     const ck_Stripe *stripes = cloth->stripes[direction_of(colour)];
-    const Vectors vectors = vectors_of(cloth, colour, at.row);
+    const Vectors vectors = vectors_of(cloth, colour, at->row);
     const int last = cloth->rows.span - 1;
-    Ends ends = ends_of(cloth, colour, at.row, vectors.first);
+    Ends ends = ends_of(cloth, colour, at->row, vectors.first);
     for (int i = vectors.first; i < vectors.end && i < last; i += vectors.step) {
         project_stripe(cloth, &ends, &stripes[i], at, terms);
         ends = ends_after(ends, vectors.step * CK_STRIPE, vectors.step * 3 * CK_STRIPE);
     }
     if (vectors.end <= last) return;
-    ends = ends_of(cloth, colour, at.row, last);
+    ends = ends_of(cloth, colour, at->row, last);
     project_stripe(cloth, &ends, &stripes[last], at, terms);
 }
 
-static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour, RowSweep at) {
+static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour,
+                                                      const ck_Visit *at) {
     project_row(cloth, colour, at, BARS | FAR);
 }
 
@@ -202,20 +199,27 @@ static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *c
 static const ck_Colour order_of_bars[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD,  CK_ALONG_LAST,
                                                  CK_DOWN,       CK_DOWN_RIGHT, CK_DOWN_LEFT};
 static const ck_Colour order_of_springs[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD, CK_ALONG_LAST,
-                                                    CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN_LATE};
+                                                    CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN};
+static const ck_Colour order_of_late_springs[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD, CK_ALONG_LAST,
+                                                         CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN_LATE};
 
-CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Wave *wave, int first, int end, ck_Colour colour,
+CK_INLINE ck_Colour colour_at(int turn, const int terms) {
+    const int at = terms & TURNED ? COLOURS - 1 - turn : turn;
+    if (terms & BARS) return order_of_bars[at];
+    return (terms & LATE ? order_of_late_springs : order_of_springs)[at];
+}
+
+CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Visit *visits, int count, ck_Colour colour,
                               const int terms) {
-    for (int i = first; i < end; i++) {
-        int at = wave->wave - CK_SWEEP_LAG * i, row = at - (colour == CK_DOWN_LATE);
-        if (row < 0 || at >= cloth->rows.rows) continue;
-        const RowSweep here = {row, wave->first_sweep + i};
-        if ((terms & BARS) && cloth->far_from[row] <= here.sweep)
-            project_far_row(cloth, colour, here);
-        else if (cloth->is_held[row])
-            project_row(cloth, colour, here, terms | HELD);
+    for (int i = 0; i < count; i++) {
+        ck_Visit here = visits[i];
+        if (colour == CK_DOWN_LATE && --here.row < 0) continue;
+        if ((terms & BARS) && cloth->far_from[here.row] <= here.sweep)
+            project_far_row(cloth, colour, &here);
+        else if (cloth->is_held[here.row])
+            project_row(cloth, colour, &here, terms | HELD);
         else
-            project_row(cloth, colour, here, terms);
+            project_row(cloth, colour, &here, terms);
     }
 }
 
@@ -242,33 +246,38 @@ CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last
 }
 
 // Colour by colour, so that each sweep in flight has the others' work to wait with, and each in a loop of its own,
-// which takes a seventh less time on a narrow cloth. A substep's first sweep finds the row below predicted.
-CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Wave *wave, const int terms) {
-    for (int i = 0; i < wave->sweeps; i++) {
-        long sweep = wave->first_sweep + i;
-        int row = wave->wave - CK_SWEEP_LAG * i;
-        if (sweep % cloth->rule.iterations || row < 0 || row >= cloth->rows.rows) continue;
-        bool is_last = sweep + cloth->rule.iterations >= cloth->sweeps;
-        if (row == 0) predict_row(cloth, 0, is_last);
-        if (row + 1 < cloth->rows.rows) predict_row(cloth, row + 1, is_last);
+// which takes a seventh less time on a narrow cloth.
+CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Visits *visits, const int terms) {
+    for (int i = 0; i < visits->count; i++) {
+        const ck_Visit *visit = &visits->at[i];
+        bool is_last = visit->sweep + cloth->rule.iterations >= cloth->sweeps;
+        for (int k = 0; k < 2; k++)
+            if (visit->begins[k] >= 0) predict_row(cloth, visit->begins[k], is_last);
     }
-    const int together = ck_rows_are_wide(&cloth->rows) ? 1 : wave->sweeps;
-    for (int first = 0; first < wave->sweeps; first += together)
+    const int together = ck_rows_are_wide(&cloth->rows) ? 1 : visits->count;
+    for (int first = 0; first < visits->count; first += together)
 #pragma GCC unroll 6
         for (int turn = 0; turn < COLOURS; turn++)
-            project_colour(cloth, wave, first, first + together,
-                           (terms & BARS ? order_of_bars : order_of_springs)[turn], terms);
+            project_colour(cloth, visits->at + first, together, colour_at(turn, terms), terms);
+}
+
+CK_INLINE void run_either_way(const ck_ProjectedCloth *cloth, const ck_Visits *visits, const int terms) {
+    if (visits->is_turned)
+        run_colours(cloth, visits, terms | TURNED);
+    else
+        run_colours(cloth, visits, terms);
 }
 
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.
-ck_ProjectionWave CK_LOOP(ck_projection_wave);
-void CK_LOOP(ck_projection_wave)(const ck_ProjectedCloth *shared, const ck_Wave *wave) {
+ck_ProjectionVisits CK_LOOP(ck_projection_visits);
+void CK_LOOP(ck_projection_visits)(const ck_ProjectedCloth *shared, const ck_Visits *visits) {
     const ck_ProjectedCloth cloth = *shared;
     switch (cloth.terms) {
-    case BARS: run_colours(&cloth, wave, BARS); break;
-    case 0: run_colours(&cloth, wave, 0); break;
-    case DAMPED: run_colours(&cloth, wave, DAMPED); break;
-    case REPEATED: run_colours(&cloth, wave, REPEATED); break;
-    default: run_colours(&cloth, wave, REPEATED | DAMPED); break;
+    case BARS: run_either_way(&cloth, visits, BARS); break;
+    case LATE: run_colours(&cloth, visits, LATE); break;
+    case LATE | DAMPED: run_colours(&cloth, visits, LATE | DAMPED); break;
+    case 0: run_either_way(&cloth, visits, 0); break;
+    case REPEATED: run_either_way(&cloth, visits, REPEATED); break;
+    default: run_either_way(&cloth, visits, REPEATED | DAMPED); break;
     }
 }

@@ -5,9 +5,6 @@
 #include "constraint_kernel.h"
 #include "loops.h"
 
-// Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it.
-#define CK_SWEEP_LAG 3
-
 // One colour of a row's springs: no two of a colour share a particle. DOWN_LATE is the DOWN of the row above.
 typedef enum ck_Colour {
     CK_ALONG_EVEN,
@@ -49,7 +46,7 @@ struct ck_ProjectedCloth {
     double long_scale;                 // of bars: the correction beyond which they are long
     int terms;
     long sweeps;       // of this call
-    int depth;         // of which so many run interleaved
+    int depth;         // of which so many run interleaved; of both ways: of those of one
     double *x, *start; // tiles, m; start: before the last substep
     double *before;    // m moved in the substep before the last one
     double *is_free;
@@ -59,13 +56,31 @@ struct ck_ProjectedCloth {
     double *state, *springs, *multipliers;
 };
 
-// What a cloth does not have is not in its loop; HELD and FAR are a row's.
-enum { CK_SWEEP_DAMPED = 1, CK_SWEEP_REPEATED = 2, CK_SWEEP_BARS = 4, CK_SWEEP_HELD = 8, CK_SWEEP_FAR = 16 };
+// What a cloth does not have is not in its loop; LATE and TURNED are a sweep's, HELD and FAR a row's.
+enum {
+    CK_SWEEP_DAMPED = 1,
+    CK_SWEEP_REPEATED = 2,
+    CK_SWEEP_BARS = 4,
+    CK_SWEEP_LATE = 8,    // springs down come once the row below is done
+    CK_SWEEP_TURNED = 16, // colours come in the reverse order
+    CK_SWEEP_HELD = 32,
+    CK_SWEEP_FAR = 64
+};
 
-// The sweeps of a block, and the row at which each is in a wave.
-typedef struct ck_Wave {
-    long first_sweep;
-    int sweeps, wave;
-} ck_Wave;
+// A sweep at a row; and the rows, or -1, that are to begin the substep before it.
+typedef struct ck_Visit {
+    long sweep;
+    int row, begins[2];
+} ck_Visit;
+
+// The most that are in flight together: of one sweep each, or of both halves.
+#define CK_MOST_VISITS 64
+
+// Visits that touch no particle of each other's, or are done colour by colour where they do.
+typedef struct ck_Visits {
+    int count;
+    bool is_turned;
+    ck_Visit at[CK_MOST_VISITS];
+} ck_Visits;
 
 #endif

@@ -7,6 +7,8 @@
 typedef struct ck_ExplicitKind {
     ck_Status (*create)(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
     void (*place)(ck_Explicit *body, const ck_ExplicitSetup *setup);
+    void (*pace)(ck_Explicit *body, const ck_ExplicitSetup *setup);
+    const double *(*acceleration)(const ck_Explicit *body, size_t *count);
     void (*destroy)(ck_Explicit *body);
     void (*step)(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
     void (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);

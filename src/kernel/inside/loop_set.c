@@ -10,7 +10,7 @@ ck_TouchHold CK_LOOP(ck_touch_hold);
 ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_NearChunk CK_LOOP(ck_near_chunk);
-ck_ProjectionWave CK_LOOP(ck_projection_wave);
+ck_ProjectionVisits CK_LOOP(ck_projection_visits);
 ck_Peak CK_LOOP(ck_peak);
 
 extern const ck_Loops CK_LOOP(ck_loops);
@@ -26,6 +26,6 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .list_start = CK_LOOP(ck_list_start),
     .list_chunk = CK_LOOP(ck_list_chunk),
     .near_chunk = CK_LOOP(ck_near_chunk),
-    .projection_wave = CK_LOOP(ck_projection_wave),
+    .projection_visits = CK_LOOP(ck_projection_visits),
     .peak = CK_LOOP(ck_peak),
 };

@@ -59,6 +59,10 @@ static double correct(const Substep *step, const ck_Spring *spring, const double
     return -share / h / weight * length * (squared - rest * rest) / (squared + rest * rest);
 }
 
+static bool is_turned(const Substep *step, uint32_t sweep) {
+    return step->method != CK_METHOD_BULLET_PBD && ck_sweep_is_turned(sweep, step->used->iterations);
+}
+
 // after  [3*n] out, m. The tensions of the sweeps are left in step->tension.
 static void take(const Substep *step, const double *position, double *after) {
     const ck_Model *model = step->model;
@@ -70,7 +74,8 @@ static void take(const Substep *step, const double *position, double *after) {
     }
     memset(step->tension, 0, sizeof(double) * (size_t)model->spring_count);
     for (uint32_t sweep = 0; sweep < step->used->iterations; sweep++)
-        for (int i = 0; i < model->spring_count; i++) {
+        for (int k = 0; k < model->spring_count; k++) {
+            const int i = is_turned(step, sweep) ? model->spring_count - 1 - k : k;
             const ck_Spring *spring = step->order[i];
             double weight_a = ck_model_inverse_mass(model, spring->a),
                    weight_b = ck_model_inverse_mass(model, spring->b), along[3];
@@ -123,7 +128,8 @@ static const ck_Spring **springs_in_order(const ck_Model *model, const ck_Engine
     if (found && method == CK_METHOD_BULLET_PBD && !(reordered && ck_settings_get(used, reordered->slot) > 0))
         for (size_t i = 0; i < count; i++) order[i] = (int)i;
     else if (found)
-        found = !ck_sweep_order(model, method == CK_METHOD_STOERMER_BARS ? CK_PROJECT_BARS : CK_PROJECT_SPRINGS, order);
+        found = !ck_sweep_order(model, method == CK_METHOD_STOERMER_BARS ? CK_PROJECT_BARS : CK_PROJECT_SPRINGS,
+                                method == CK_METHOD_BULLET_PBD ? 1 : used->iterations, order);
     for (size_t i = 0; i < count && found; i++) springs[i] = &model->springs[order[i]];
     free(order);
     if (found) return springs;

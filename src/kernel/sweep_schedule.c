@@ -1,0 +1,149 @@
+// The order in which the sweeps over a cloth's rows come to them: ck_projection_step.
+#include "constraint_kernel.h"
+#include "constraint_loop.h"
+
+// Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it; and where
+// halves meet, the lower one comes to the row that they share up to two waves after the upper one.
+#define LAG 3
+
+// Sweeps that run interleaved: of a narrow cloth enough independent work for a processor that waits for each sweep's
+// last result; threads, which are to meet at few rows, and wide cloths take fewer.
+#define DEPTH 4
+#define DEPTH_WIDE 2
+// Bytes that a core's first cache holds at least.
+#define FIRST_CACHE (1 << 15)
+
+static int at_least(int depth, int least) {
+    return depth > least ? depth : least;
+}
+
+static int at_most(int depth, int most) {
+    return depth < most ? depth : most;
+}
+
+static size_t row_bytes(const ck_ProjectedCloth *cloth) {
+    return 6 * sizeof(double) * (size_t)cloth->rows.stride;
+}
+
+// One sweep a substep, down: a substep's first sweep finds the row below begun.
+static void run_down(void *state, long block, int wave) {
+    const ck_ProjectedCloth *cloth = state;
+    const int rows = cloth->rows.rows;
+    ck_Visits visits = {.is_turned = false};
+    for (int i = 0; i < cloth->depth; i++) {
+        const int row = wave - LAG * i;
+        const long sweep = block * cloth->depth + i;
+        if (row < 0 || row >= rows || sweep >= cloth->sweeps) continue;
+        visits.at[visits.count++] = (ck_Visit){sweep, row, {row == 0 ? 0 : -1, row + 1 < rows ? row + 1 : -1}};
+    }
+    cloth->loops->projection_visits(cloth, &visits);
+}
+
+static void step_down(ck_ProjectedCloth *cloth, ck_Waves *waves) {
+    const ck_Rows *rows = &cloth->rows;
+    const int depth = ck_waves_depth(waves, cloth->sweeps, rows->rows, LAG, row_bytes(cloth));
+    cloth->depth = at_most(at_least(depth, waves || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH), CK_MOST_VISITS);
+    // a block's first sweep reads the row below it as the last sweep of the block before left it
+    const int reach = LAG * (cloth->depth - 1) + 2;
+    ck_waves_run(waves, &(ck_WaveWork){run_down, cloth, (cloth->sweeps + cloth->depth - 1) / cloth->depth,
+                                       rows->rows + reach - 2, reach});
+}
+
+// Sweeps both ways: from the first row and from the last one to the middle, and then the same back, so that what a
+// substep does is a product of steps and their transposes. The halves share a row, which the lower one comes to when
+// the upper one is done.
+typedef struct BothWays {
+    const ck_ProjectedCloth *cloth;
+    int in, out;       // sweeps to the middle, and back, of a substep
+    int upper, places; // rows of the upper half, and of the lower half
+    int lag;           // places between a sweep and the next
+    int waves[2];      // of those in, and of those out
+} BothWays;
+
+// The sweeps that are under way at a step: first to end, of those in or of those out.
+typedef struct Stage {
+    long sweep; // the number of that way's first one
+    int wave, first, end;
+    bool is_out;
+} Stage;
+
+static Stage stage_at(const BothWays *ways, long step) {
+    const int waves = ways->waves[0] + ways->waves[1];
+    Stage stage = {.sweep = step / waves * (ways->in + ways->out), .wave = (int)(step % waves)};
+    stage.is_out = stage.wave >= ways->waves[0];
+    if (stage.is_out) stage.wave -= ways->waves[0], stage.sweep += ways->in;
+    const int before = stage.wave - ways->places + ways->lag;
+    stage.first = before > 0 ? before / ways->lag : 0;
+    stage.end = at_most(stage.wave / ways->lag + 1, stage.is_out ? ways->out : ways->in);
+    return stage;
+}
+
+// How far from the edges a stage's sweep is, in rows.
+static int place_of(const BothWays *ways, const Stage *stage, int sweep) {
+    const int gone = stage->wave - ways->lag * sweep;
+    return stage->is_out ? ways->places - 1 - gone : gone;
+}
+
+static ck_Visit visit_upper(const BothWays *ways, long sweep, int place) {
+    const bool begins = sweep % (ways->in + ways->out) == 0;
+    return (ck_Visit){sweep, place, {begins && place == 0 ? 0 : -1, begins ? place + 1 : -1}};
+}
+
+// The upper half, where there is one, has begun the row that both share.
+static ck_Visit visit_lower(const BothWays *ways, long sweep, int place) {
+    const int row = ways->cloth->rows.rows - 1 - place;
+    const bool begins = sweep % (ways->in + ways->out) == 0 && (row > ways->upper || ways->upper == 0);
+    return (ck_Visit){sweep, row, {begins ? row : -1, -1}};
+}
+
+static void run_both_ways(void *state, long step, bool runs_upper, bool runs_lower) {
+    const BothWays *ways = state;
+    const Stage stage = stage_at(ways, step);
+    ck_Visits visits = {.is_turned = stage.is_out};
+    for (int i = stage.first; i < stage.end; i++) {
+        const int place = place_of(ways, &stage, i);
+        if (runs_upper && place < ways->upper) visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place);
+        if (runs_lower) visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place);
+    }
+    ways->cloth->loops->projection_visits(ways->cloth, &visits);
+}
+
+// A sweep is at the row that both halves share.
+static bool halves_meet(void *state, long step) {
+    const BothWays *ways = state;
+    const Stage stage = stage_at(ways, step);
+    for (int i = stage.first; i < stage.end; i++)
+        if (place_of(ways, &stage, i) == ways->places - 1) return true;
+    return false;
+}
+
+// A cloth beyond the second cache has its sweeps close together, so that it comes to it but once; else as many are
+// under way in each half as the first cache holds the rows of.
+static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps) {
+    const size_t bytes = row_bytes(cloth), together = 2 * LAG * bytes;
+    const int depth = ck_waves_depth(NULL, sweeps, cloth->rows.rows, LAG, bytes) > 1
+                          ? sweeps
+                          : (int)((FIRST_CACHE + together - 1) / together),
+              lag = at_least((places + depth - 1) / depth, LAG);
+    return at_least(lag, (2 * places + CK_MOST_VISITS - 1) / CK_MOST_VISITS);
+}
+
+static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
+    const int rows = cloth->rows.rows, sweeps = (int)cloth->rule.iterations;
+    BothWays ways = {.cloth = cloth, .out = sweeps / 2, .upper = (rows - 1) / 2};
+    ways.in = sweeps - ways.out;
+    ways.places = rows - ways.upper;
+    ways.lag = lag_of(cloth, ways.places, ways.in);
+    ways.waves[0] = ways.places + ways.lag * (ways.in - 1);
+    ways.waves[1] = ways.places + ways.lag * (ways.out - 1);
+    ck_waves_run_halves(
+        waves, &(ck_HalvesWork){run_both_ways, halves_meet, &ways, (long)substeps * (ways.waves[0] + ways.waves[1])});
+}
+
+void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
+    cloth->sweeps = (long)substeps * cloth->rule.iterations;
+    if (cloth->rule.iterations == 1)
+        step_down(cloth, waves);
+    else
+        step_both_ways(cloth, substeps, waves);
+}
