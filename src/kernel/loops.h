@@ -11,6 +11,7 @@
 struct ck_ExplicitCloth;
 struct ck_ExplicitList;
 struct ck_ProjectedCloth;
+struct ck_SweepList;
 struct ck_Visits;
 
 // A row's way to the first substep's forces; see spring_loop.h.
@@ -60,6 +61,8 @@ typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const c
                           uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const struct ck_Visits *visits);
+// A sweep over packs of springs; see sweep_list_loop.h.
+typedef void ck_SweepPacks(const struct ck_SweepList *list, bool is_turned);
 // Products with a sum each, as many as it can a second; returns how many there were.
 typedef long ck_Peak(long rounds, double *result);
 
@@ -76,6 +79,7 @@ typedef struct ck_Loops {
     ck_ListChunk *list_chunk;
     ck_NearChunk *near_chunk;
     ck_ProjectionVisits *projection_visits;
+    ck_SweepPacks *sweep_packs;
     ck_Peak *peak;
 } ck_Loops;
 

@@ -4,6 +4,7 @@
 #include "explicit.h"
 #include "loops.h"
 #include "path.h"
+#include "sweep_list.h"
 #include "vector.h"
 
 #include <stdint.h>
@@ -62,6 +63,7 @@ void ck_native_destroy(void *state) {
     ck_rigid_contact_destroy(native->rigid);
     ck_waves_destroy(native->waves);
     ck_projection_destroy(native->cloth);
+    ck_sweep_list_destroy(native->sweeps);
     ck_explicit_destroy(native->springs);
     free(native->compliance);
     free(native->gamma);

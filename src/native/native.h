@@ -8,6 +8,7 @@
 #include "rigid_contact.h"
 
 struct ck_ProjectedCloth;
+struct ck_SweepList;
 struct ck_Waves;
 
 typedef struct ck_Native {
@@ -32,6 +33,7 @@ typedef struct ck_Native {
     ck_RigidContact *rigid;          // NULL without rigid bodies
     struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
+    struct ck_SweepList *sweeps;     // over that list, in vectors; NULL: one by one
     struct ck_Explicit *springs;     // of native-verlet alone
 } ck_Native;
 

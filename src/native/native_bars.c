@@ -34,10 +34,7 @@ static void sweep(ck_Native *native, bool is_turned) {
 }
 
 static bool relax(ck_Native *native) {
-    for (uint32_t i = 0; i < native->iterations; i++) {
-        sweep(native, ck_sweep_is_turned(i, native->iterations));
-        ck_native_project(native);
-    }
+    ck_native_sweep(native, sweep, NULL);
     return true;
 }
 
@@ -63,7 +60,7 @@ static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
         CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1, 0, native->used.relaxation};
     ck_model_field(native->model, 0, rule.push);
     for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
-    return ck_native_project_rows(native, &rule, error);
+    return ck_native_lay_out(native, &rule, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,

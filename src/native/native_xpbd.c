@@ -105,11 +105,7 @@ static void substep(ck_Native *native) {
         }
     }
     ck_native_drive(native);
-    for (uint32_t i = 0; i < native->iterations; i++) {
-        sweep(native, ck_sweep_is_turned(i, native->iterations));
-        if (native->bending) sweep_hinges(native);
-        ck_native_project(native);
-    }
+    ck_native_sweep(native, sweep, native->bending ? sweep_hinges : NULL);
     for (int i = 0; i < 3 * model->particle_count; i++)
         native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
     ck_native_drive_speed(native);
@@ -190,6 +186,7 @@ static void soften(ck_Native *native) {
 static void pace(void *state, double duration) {
     ck_native_pace(state, duration);
     soften(state);
+    ck_native_soften(state, CK_PROJECT_SPRINGS);
 }
 
 static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
@@ -204,7 +201,7 @@ static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
                               native->used.relaxation};
     ck_model_field(native->model, 0, rule.push);
     for (int axis = 0; axis < 3; axis++) rule.push[axis] *= dt;
-    return ck_native_project_rows(native, &rule, error);
+    return ck_native_lay_out(native, &rule, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,

@@ -11,6 +11,7 @@ ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_NearChunk CK_LOOP(ck_near_chunk);
 ck_ProjectionVisits CK_LOOP(ck_projection_visits);
+ck_SweepPacks CK_LOOP(ck_sweep_packs);
 ck_Peak CK_LOOP(ck_peak);
 
 extern const ck_Loops CK_LOOP(ck_loops);
@@ -27,5 +28,6 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .list_chunk = CK_LOOP(ck_list_chunk),
     .near_chunk = CK_LOOP(ck_near_chunk),
     .projection_visits = CK_LOOP(ck_projection_visits),
+    .sweep_packs = CK_LOOP(ck_sweep_packs),
     .peak = CK_LOOP(ck_peak),
 };

@@ -1,0 +1,223 @@
+#include "sweep_list.h"
+
+#include "sweep_list_loop.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Springs of a pack, in the mean, at least.
+#define LEAST_FILL (CK_PACK / 4)
+
+// Springs that wait for none before them, the lowest number first: a heap; and what the others wait for.
+typedef struct Waiting {
+    int *heap, count;
+    int *next;   // [2*springs] the next spring at each end, or -1
+    int *before; // [springs] how many still come before it
+} Waiting;
+
+static void push(Waiting *waiting, int spring) {
+    int at = waiting->count++;
+    for (; at > 0 && waiting->heap[(at - 1) / 2] > spring; at = (at - 1) / 2)
+        waiting->heap[at] = waiting->heap[(at - 1) / 2];
+    waiting->heap[at] = spring;
+}
+
+static int pop(Waiting *waiting) {
+    const int first = waiting->heap[0], last = waiting->heap[--waiting->count];
+    int at = 0;
+    for (int child; (child = 2 * at + 1) < waiting->count; at = child) {
+        if (child + 1 < waiting->count && waiting->heap[child + 1] < waiting->heap[child]) child++;
+        if (waiting->heap[child] >= last) break;
+        waiting->heap[at] = waiting->heap[child];
+    }
+    waiting->heap[at] = last;
+    return first;
+}
+
+static void link_springs(Waiting *waiting, const ck_Model *model, int *last) {
+    for (int i = 0; i < model->particle_count; i++) last[i] = -1;
+    for (int i = model->spring_count - 1; i >= 0; i--)
+        for (int end = 0; end < 2; end++) {
+            int *after = &last[end ? model->springs[i].b : model->springs[i].a];
+            waiting->next[2 * i + end] = *after;
+            if (*after >= 0) waiting->before[*after]++;
+            *after = i;
+        }
+    for (int i = 0; i < model->spring_count; i++)
+        if (!waiting->before[i]) push(waiting, i);
+}
+
+// Fills order, [spring_count*CK_PACK] at most, pack by pack with those that wait for none; returns how many packs.
+static int fill_packs(Waiting *waiting, int *order) {
+    int packs = 0;
+    for (; waiting->count; packs++) {
+        int *pack = order + (size_t)packs * CK_PACK, filled = 0;
+        while (waiting->count && filled < CK_PACK) pack[filled++] = pop(waiting);
+        for (int i = 0; i < filled; i++)
+            for (int end = 0; end < 2; end++) {
+                const int next = waiting->next[2 * pack[i] + end];
+                if (next >= 0 && !--waiting->before[next]) push(waiting, next);
+            }
+        for (; filled < CK_PACK; filled++) pack[filled] = -1;
+    }
+    return packs;
+}
+
+// False without memory. No order, where packs are too empty to be worth it.
+static bool schedule(ck_SweepList *list, const ck_Model *model) {
+    const size_t springs = (size_t)model->spring_count;
+    int *order = malloc(sizeof *order * CK_PACK * springs),
+        *last = malloc(sizeof *last * (size_t)model->particle_count);
+    Waiting waiting = {.heap = malloc(sizeof(int) * springs),
+                       .next = malloc(2 * sizeof(int) * springs),
+                       .before = calloc(springs, sizeof(int))};
+    const bool has_memory = order && last && waiting.heap && waiting.next && waiting.before;
+    if (has_memory) {
+        link_springs(&waiting, model, last);
+        list->packs = fill_packs(&waiting, order);
+        if ((long)list->packs * LEAST_FILL <= model->spring_count)
+            list->order = realloc(order, sizeof *order * CK_PACK * (size_t)list->packs);
+    }
+    if (!list->order) free(order);
+    free(last);
+    free(waiting.heap);
+    free(waiting.next);
+    free(waiting.before);
+    return has_memory;
+}
+
+static void put_ends(ck_SweepList *list, const ck_Model *model) {
+    const uint32_t bytes = CK_SEAT * sizeof(double), spare = (uint32_t)model->particle_count * bytes;
+    for (int i = 0; i < list->packs * CK_PACK; i++) {
+        const ck_Spring *spring = list->order[i] >= 0 ? &model->springs[list->order[i]] : NULL;
+        list->ends[i / CK_PACK].a[i % CK_PACK] = spring ? (uint32_t)spring->a * bytes : spare;
+        list->ends[i / CK_PACK].b[i % CK_PACK] = spring ? (uint32_t)spring->b * bytes : spare;
+    }
+}
+
+static double value_of(const ck_Model *model, const ck_SweepRule *rule, int index, ck_SweepValue value) {
+    const ck_Spring *spring = &model->springs[index];
+    const double weight_a = rule->inverse_mass[spring->a], weight_b = rule->inverse_mass[spring->b],
+                 weight = weight_a + weight_b;
+    const bool are_bars = rule->projection == CK_PROJECT_BARS;
+    switch (value) {
+    case CK_SWEPT_WEIGHT_A: return weight_a;
+    case CK_SWEPT_WEIGHT_B: return weight_b;
+    case CK_SWEPT_REST: return spring->rest;
+    case CK_SWEPT_COMPLIANCE: return are_bars ? 0 : rule->compliance[index];
+    case CK_SWEPT_GAMMA: return are_bars ? 0 : rule->gamma[index];
+    case CK_SWEPT_HANGS: return spring->pulls_only;
+    default: break;
+    }
+    if (weight == 0) return 0;
+    if (are_bars) return 0.5 * rule->relaxation / (spring->rest * spring->rest * weight);
+    return rule->relaxation / ((1 + rule->gamma[index]) * weight + rule->compliance[index]);
+}
+
+static void put_values(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule, ck_SweepValue value) {
+    double *of = list->values[value].of;
+    for (int i = 0; i < (list->values[value].step ? list->packs * CK_PACK : CK_PACK); i++)
+        of[i] = !list->values[value].step ? value_of(model, rule, 0, value)
+                : list->order[i] >= 0     ? value_of(model, rule, list->order[i], value)
+                                          : 0;
+}
+
+// Whether one pack's worth says it of all. Weights and shares are 0 where there is no spring; others may change.
+static bool is_alike(const ck_Model *model, const ck_SweepRule *rule, ck_SweepValue value) {
+    if (value == CK_SWEPT_WEIGHT_A || value == CK_SWEPT_WEIGHT_B || value == CK_SWEPT_SHARE) return false;
+    for (int i = 1; i < model->spring_count; i++)
+        if (value_of(model, rule, i, value) != value_of(model, rule, 0, value)) return false;
+    return true;
+}
+
+static bool allocate(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule) {
+    const size_t slots = (size_t)list->packs * CK_PACK, seats = CK_SEAT * ((size_t)model->particle_count + 1);
+    bool has_memory = true;
+    for (int value = 0; value < CK_SWEPT_VALUES; value++) {
+        const bool alike = is_alike(model, rule, value);
+        list->values[value] =
+            (ck_SpringValues){aligned_alloc(64, sizeof(double) * (alike ? CK_PACK : slots)), alike ? 0 : CK_PACK};
+        has_memory &= list->values[value].of != NULL;
+    }
+    list->ends = aligned_alloc(64, sizeof *list->ends * (size_t)list->packs);
+    const size_t bytes = (sizeof(double) * (slots + 2 * seats) + 63) / 64 * 64;
+    list->state = aligned_alloc(64, bytes);
+    if (!has_memory || !list->ends || !list->state) return false;
+    memset(list->state, 0, bytes);
+    list->multiplier = list->state;
+    list->x = list->state + slots;
+    list->start = list->x + seats;
+    return true;
+}
+
+static int terms_of(const ck_Model *model, const ck_SweepRule *rule) {
+    int terms = rule->iterations > 1 ? CK_SWEEP_LIST_REPEATED : 0;
+    if (rule->projection == CK_PROJECT_BARS) return CK_SWEEP_LIST_BARS;
+    for (int i = 0; i < model->spring_count; i++)
+        terms |=
+            (rule->gamma[i] > 0 ? CK_SWEEP_LIST_DAMPED : 0) | (model->springs[i].pulls_only ? CK_SWEEP_LIST_HANGS : 0);
+    return terms;
+}
+
+void ck_sweep_list_destroy(ck_SweepList *list) {
+    if (!list) return;
+    for (int value = 0; value < CK_SWEPT_VALUES; value++) free(list->values[value].of);
+    free(list->order);
+    free(list->ends);
+    free(list->state);
+    free(list);
+}
+
+void ck_sweep_list_set(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule) {
+    for (int value = 0; value < CK_SWEPT_VALUES; value++) put_values(list, model, rule, value);
+    list->terms = terms_of(model, rule);
+}
+
+ck_Status ck_sweep_list_create(ck_SweepList **out, const ck_Loops *loops, const ck_Model *model,
+                               const ck_SweepRule *rule, ck_Error *error) {
+    *out = NULL;
+    if (!model->spring_count || model->particle_count > CK_MOST_LISTED || model->spring_count > CK_MOST_LISTED)
+        return CK_OK;
+    ck_SweepList *list = calloc(1, sizeof *list);
+    bool has_memory = list && schedule(list, model);
+    if (has_memory && !list->order) {
+        ck_sweep_list_destroy(list);
+        return CK_OK;
+    }
+    if (!has_memory || !allocate(list, model, rule)) {
+        ck_sweep_list_destroy(list);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    list->loops = loops;
+    list->particles = model->particle_count;
+    list->springs = model->spring_count;
+    put_ends(list, model);
+    ck_sweep_list_set(list, model, rule);
+    *out = list;
+    return CK_OK;
+}
+
+static void seat(double *seats, const double *position, int particles) {
+    for (int i = 0; i < particles; i++)
+        for (int axis = 0; axis < 3; axis++) seats[CK_SEAT * (long)i + axis] = position[3 * (long)i + axis];
+}
+
+void ck_sweep_list_begin(ck_SweepList *list, const double *position, const double *start) {
+    seat(list->x, position, list->particles);
+    seat(list->start, start, list->particles);
+    if (list->terms & (CK_SWEEP_LIST_REPEATED | CK_SWEEP_LIST_HANGS))
+        memset(list->multiplier, 0, sizeof(double) * CK_PACK * (size_t)list->packs);
+}
+
+void ck_sweep_list_sweep(const ck_SweepList *list, bool is_turned) {
+    list->loops->sweep_packs(list, is_turned);
+}
+
+void ck_sweep_list_read(const ck_SweepList *list, double *position) {
+    for (int i = 0; i < list->particles; i++)
+        for (int axis = 0; axis < 3; axis++) position[3 * (long)i + axis] = list->x[CK_SEAT * (long)i + axis];
+}
+
+void ck_sweep_list_take(ck_SweepList *list, const double *position) {
+    seat(list->x, position, list->particles);
+}
