@@ -5,13 +5,14 @@ set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 # A folder.
 #   SOURCES         one a line
 #   VECTOR_SOURCES  compiled once for each kind of vectors; they say CK_LOOP(name)
+#   SINGLE_SOURCES, SINGLE_VECTOR_SOURCES  of both, those that are compiled again for single precision, with CK_SINGLE
 #   USES            folders whose headers its own headers include
 #   USES_INSIDE     folders that only its sources include, so that its users do not see them
 #   DEFINITIONS     of its sources
 #   LIBRARIES       others, for its sources
 # Headers in inside/ are for the folder itself and for its tests.
 function(clothcheck_layer name)
-  cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "SOURCES;VECTOR_SOURCES;USES;USES_INSIDE;DEFINITIONS;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "SOURCES;VECTOR_SOURCES;SINGLE_SOURCES;SINGLE_VECTOR_SOURCES;USES;USES_INSIDE;DEFINITIONS;LIBRARIES")
   list(TRANSFORM LAYER_USES PREPEND ck_)
   list(TRANSFORM LAYER_USES_INSIDE PREPEND ck_)
   add_library(ck_${name} STATIC ${LAYER_SOURCES})
@@ -19,7 +20,15 @@ function(clothcheck_layer name)
   target_compile_definitions(ck_${name} PRIVATE ${LAYER_DEFINITIONS})
   target_link_libraries(ck_${name} PUBLIC options ${LAYER_USES} PRIVATE ${LAYER_USES_INSIDE} ${LAYER_LIBRARIES})
   if(LAYER_VECTOR_SOURCES)
-    clothcheck_vectors(${name})
+    if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+      target_compile_definitions(ck_${name} PRIVATE CK_HAS_X86_VECTORS)
+    endif()
+    clothcheck_vectors(${name} "" ${LAYER_VECTOR_SOURCES})
+  endif()
+  if(LAYER_SINGLE_SOURCES)
+    clothcheck_vectors(${name} single_ ${LAYER_SINGLE_VECTOR_SOURCES})
+    clothcheck_objects(ck_${name}_single CK_SINGLE ${LAYER_SINGLE_SOURCES})
+    target_sources(ck_${name} PRIVATE $<TARGET_OBJECTS:ck_${name}_single>)
   endif()
 endfunction()
 
@@ -33,17 +42,22 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   set(MACHINE_v4 -march=x86-64-v4)
 endif()
 
-macro(clothcheck_vectors name)
-  if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
-    target_compile_definitions(ck_${name} PRIVATE CK_HAS_X86_VECTORS)
-  endif()
+# Sources of a layer as objects of their own, with a definition.
+macro(clothcheck_objects objects definition)
+  add_library(${objects} OBJECT ${ARGN})
+  target_include_directories(${objects} PRIVATE . inside)
+  target_link_libraries(${objects} PRIVATE options ${LAYER_USES} ${LAYER_USES_INSIDE})
+  target_compile_definitions(${objects} PRIVATE ${LAYER_DEFINITIONS} ${definition})
+endmacro()
+
+# precision: nothing, or single_
+macro(clothcheck_vectors name precision)
   foreach(vectors IN LISTS VECTORS)
-    set(objects ck_${name}_${vectors})
-    add_library(${objects} OBJECT ${LAYER_VECTOR_SOURCES})
-    target_include_directories(${objects} PRIVATE . inside)
-    target_link_libraries(${objects} PRIVATE options ${LAYER_USES} ${LAYER_USES_INSIDE})
-    target_compile_definitions(${objects} PRIVATE ${LAYER_DEFINITIONS} CK_VECTORS=${vectors}
-      CK_VECTORS_NAME="$<$<NOT:$<STREQUAL:${vectors},plain>>:x86-64->${vectors}")
+    set(objects ck_${name}_${precision}${vectors})
+    clothcheck_objects(${objects} CK_VECTORS=${precision}${vectors} ${ARGN})
+    target_compile_definitions(${objects} PRIVATE
+      CK_VECTORS_NAME="$<$<NOT:$<STREQUAL:${vectors},plain>>:x86-64->${vectors}"
+      $<$<STREQUAL:${precision},single_>:CK_SINGLE>)
     # a root sets no error number
     target_compile_options(${objects} PRIVATE ${MACHINE_${vectors}} -fno-math-errno)
     target_sources(ck_${name} PRIVATE $<TARGET_OBJECTS:${objects}>)

@@ -36,13 +36,21 @@ typedef struct ck_ProjectedCloth ck_ProjectedCloth;
 // True where the kernel takes a model: a regular cloth without bending springs and colliders.
 bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
 
-// Position, velocity and the velocity a substep earlier, [3*n], are taken over; inverse_mass [n] is 0 where pinned.
+// Where a cloth is at the start of a substep.
+//   position, velocity, before  [3*n] m, m/s, and m/s a substep earlier
+//   inverse_mass                [n] 1/kg, 0 where pinned
+typedef struct ck_ProjectionSetup {
+    const ck_Loops *loops;
+    const ck_Model *model;
+    const ck_RowSprings *springs;
+    const ck_ProjectionRule *rule;
+    const double *position, *velocity, *before, *inverse_mass;
+} ck_ProjectionSetup;
+
+// In the precision of the loops: in single precision, places are told from an origin that moves with the cloth.
 // Memory: 10 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
 // ck_projection_destroy.
-ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_Loops *loops, const ck_Model *model,
-                               const ck_RowSprings *springs, const ck_ProjectionRule *rule, const double *position,
-                               const double *velocity, const double *before, const double *inverse_mass,
-                               ck_Error *error);
+ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 
 // As many substeps, without allocation; sweeps run interleaved, a few rows apart, which changes no result.

@@ -12,7 +12,8 @@ static ck_Status create(ck_Explicit **body, const ck_ExplicitKind *kind, const c
 ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error) {
     ck_RowSprings springs;
     const bool is_regular = ck_rows_fit(setup->model, &springs);
-    return create(body, is_regular ? &ck_explicit_rows : &ck_explicit_list, setup, error);
+    const ck_ExplicitKind *rows = setup->loops->is_single ? &ck_explicit_rows_single : &ck_explicit_rows;
+    return create(body, is_regular ? rows : &ck_explicit_list, setup, error);
 }
 
 ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error) {

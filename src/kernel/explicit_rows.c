@@ -1,6 +1,7 @@
-// The layout of explicit.h for regular cloths.
+// The layout of explicit.h for regular cloths. Compiled for either precision; see single.h.
 #include "explicit_kind.h"
 #include "spring_loop.h"
+#include "vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +14,16 @@ static void run_row(void *state, long pass, int row) {
         cloth->loops->explicit_start(cloth, row);
         return;
     }
-    if (row == 0) memset(cloth->a, 0, 3 * sizeof(double) * (size_t)cloth->rows.stride);
+    if (row == 0) memset(cloth->a, 0, 3 * sizeof(ck_Real) * (size_t)cloth->rows.stride);
     cloth->loops->explicit_row(cloth, row, pass < cloth->substeps);
+}
+
+// The origin follows a cloth that has gone farther than it is wide.
+static void follow(ck_ExplicitCloth *cloth) {
+    const ck_Real shift[] = {cloth->x[0], cloth->x[CK_STRIPE], cloth->x[2 * CK_STRIPE]};
+    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > cloth->size)) return;
+    ck_rows_shift(&cloth->rows, cloth->x, shift);
+    for (int axis = 0; axis < 3; axis++) cloth->origin[axis] += shift[axis];
 }
 
 static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
@@ -22,7 +31,8 @@ static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
     cloth->substeps = substeps;
     // a row reads those below it as the pass before left them
     ck_passes_run(waves, &(ck_Passes){run_row, cloth, substeps + 1L, cloth->rows.rows,
-                                      cloth->terms & CK_ROW_BENT ? 2 : 1, 12 * sizeof(double) * cloth->rows.stride});
+                                      cloth->terms & CK_ROW_BENT ? 2 : 1, 12 * sizeof(ck_Real) * cloth->rows.stride});
+    if (CK_IS_SINGLE) follow(cloth);
 }
 
 static void kick(ck_Explicit *body) {
@@ -31,6 +41,7 @@ static void kick(ck_Explicit *body) {
     for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 1, row);
 }
 
+#ifndef CK_SINGLE
 // From or to a tile, whose coordinates stand a stripe apart, where those of loose ones stand so far apart.
 CK_INLINE void take_tile(double *to, long stride, const double *from) {
     const double x = from[0], y = from[CK_STRIPE], z = from[2 * CK_STRIPE];
@@ -94,10 +105,18 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *al
     }
 }
 
+static const double *acceleration(const ck_Explicit *body, size_t *count) {
+    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
+    *count = 3 * (size_t)(cloth->rows.rows * cloth->rows.stride);
+    return cloth->a;
+}
+#endif
+
 static void read_state(const ck_Explicit *body, double *position, double *velocity) {
     const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
-    ck_rows_store(&cloth->rows, position, cloth->x);
-    ck_rows_store(&cloth->rows, velocity, cloth->v);
+    static const double none[3];
+    ck_rows_store(&cloth->rows, position, cloth->x, cloth->origin);
+    ck_rows_store(&cloth->rows, velocity, cloth->v, none);
 }
 
 static void destroy(ck_Explicit *body) {
@@ -118,37 +137,35 @@ static int terms_of(const ck_Model *model, const ck_RowSprings *springs) {
 static void pace(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     const int columns = setup->model->columns;
-    cloth->dt = setup->dt;
+    cloth->dt = (ck_Real)setup->dt;
     for (int i = 0; i < setup->model->particle_count; i++)
-        cloth->gain[ck_rows_at(&cloth->rows, i / columns, i % columns).single] = setup->dt * setup->inverse_mass[i];
-}
-
-static const double *acceleration(const ck_Explicit *body, size_t *count) {
-    const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
-    *count = 3 * (size_t)(cloth->rows.rows * cloth->rows.stride);
-    return cloth->a;
+        cloth->gain[ck_rows_at(&cloth->rows, i / columns, i % columns).single] =
+            (ck_Real)(setup->dt * setup->inverse_mass[i]);
 }
 
 // Where it is, and the acceleration there: what a pass gives that goes nowhere.
 static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    ck_rows_load(&cloth->rows, cloth->x, setup->position);
-    ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity);
+    static const double none[3];
+    if (CK_IS_SINGLE) memcpy(cloth->origin, setup->position, sizeof cloth->origin);
+    ck_rows_load(&cloth->rows, cloth->x, setup->position, cloth->origin);
+    ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity, none);
     pace(body, setup);
     kick(body);
-    ck_rows_load(&cloth->rows, cloth->v, setup->velocity);
+    ck_rows_load(&cloth->rows, cloth->v, setup->velocity, none);
 }
 
 static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Error *error) {
     const ck_Model *model = setup->model;
+    double field[3];
     ck_ExplicitCloth *cloth = calloc(1, sizeof *cloth);
     if (!cloth) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     *cloth = (ck_ExplicitCloth){
-        .loops = setup->loops, .rows = ck_rows_of(model), .dt = setup->dt, .resistance = model->drag * model->mass[0]};
+        .loops = setup->loops, .rows = ck_rows_of(model), .resistance = (ck_Real)(model->drag * model->mass[0])};
     ck_rows_fit(model, &cloth->springs);
     cloth->terms = terms_of(model, &cloth->springs);
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
-        cloth->slack[kind] = cloth->springs.stiffness[kind] * cloth->springs.rest[kind];
+        cloth->slack[kind] = (ck_Real)(cloth->springs.stiffness[kind] * cloth->springs.rest[kind]);
     const ck_Rows row = {.size = (size_t)cloth->rows.stride};
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
     cloth->pairs = ck_rows_allocate(&row, 2);
@@ -167,12 +184,26 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     cloth->far_paired = cloth->pairs + row.size;
     ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
     ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
-    ck_model_field(model, 0, cloth->weight);
-    for (int axis = 0; axis < 3; axis++) cloth->weight[axis] *= model->mass[0];
+    ck_model_field(model, 0, field);
+    for (int axis = 0; axis < 3; axis++) cloth->weight[axis] = (ck_Real)(model->mass[0] * field[axis]);
+    cloth->size = model->size;
     place(&cloth->base, setup);
     *out = &cloth->base;
     return CK_OK;
 }
 
-const ck_ExplicitKind ck_explicit_rows = {create, place, pace, acceleration, destroy,   step,
-                                          drift,  kick,  take, put,          read_state};
+const ck_ExplicitKind ck_explicit_rows = {
+    .create = create,
+    .place = place,
+    .pace = pace,
+    .destroy = destroy,
+    .step = step,
+    .kick = kick,
+    .read = read_state,
+#ifndef CK_SINGLE
+    .acceleration = acceleration,
+    .drift = drift,
+    .take = take,
+    .put = put,
+#endif
+};

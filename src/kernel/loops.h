@@ -1,4 +1,5 @@
-// The innermost loops of the row kernels, compiled once for each kind of vectors that processors have.
+// The innermost loops of the row kernels, compiled once for each kind of vectors that processors have, those over rows
+// in single precision, too.
 //
 // Those for vectors of eight and of four doubles give the same bits: both fuse products and sums, and alike. The plain
 // ones, on x86 for processors older than 2013, cannot, and round otherwise.
@@ -68,8 +69,8 @@ typedef long ck_Peak(long rounds, double *result);
 
 typedef struct ck_Loops {
     const char *vectors; // what compilers call the processors that have them
-    int lanes;           // doubles of one
-    bool fuses;
+    int lanes;           // numbers of one
+    bool fuses, is_single;
     ck_ExplicitStart *explicit_start;
     ck_ExplicitRow *explicit_row;
     ck_NearRow *near_row;
@@ -88,5 +89,7 @@ const ck_Loops *ck_loops_at(int index);
 
 // The widest of at most so many doubles; 0: of any. Those of two are there always.
 const ck_Loops *ck_loops_for(uint32_t lanes);
+// Of their kind of vectors, those of single precision, which know rows only: what else there is is NULL.
+const ck_Loops *ck_loops_single(const ck_Loops *loops);
 
 #endif

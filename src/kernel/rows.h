@@ -1,6 +1,7 @@
-// A regular cloth laid out for vector instructions: each row striped over eight lanes, the widest vectors there are.
+// A regular cloth laid out for vector instructions: each row striped over eight lanes, the widest vectors there are, or
+// over sixteen of single precision.
 //
-// A row's columns are dealt out in eight runs of span columns, one a lane: column c is lane c / span of the row's
+// A row's columns are dealt out in as many runs of span columns, one a lane: column c is lane c / span of the row's
 // vector c % span. So neighbours stand in neighbouring vectors, aligned, and the springs of one vector share no
 // particle. Only from the last vector to the first, where a lane's run goes on in the next lane, is one element
 // shifted. A vector's three coordinates stand side by side, a tile: one address serves them all.
@@ -11,7 +12,19 @@
 
 #include <stddef.h>
 
+// Files that are compiled a second time, with CK_SINGLE, are for numbers of single precision then, of which twice as
+// many are a stripe. What they define has another name there: see single.h.
+#ifdef CK_SINGLE
+#include "single.h"
+typedef float ck_Real;
+#define CK_STRIPE 16
+#define CK_IS_SINGLE true
+#else
+typedef double ck_Real;
 #define CK_STRIPE 8
+#define CK_IS_SINGLE false
+#endif
+
 #define CK_INLINE static inline __attribute__((always_inline))
 
 typedef struct ck_RowSprings {
@@ -29,8 +42,8 @@ bool ck_rows_fit(const ck_Model *model, ck_RowSprings *springs);
 typedef struct ck_Rows {
     int rows, columns;
     int span;    // vectors of a row, at least 2
-    long stride; // doubles of a row of singles
-    size_t size; // doubles of an array of singles, and some: equal places do not share a cache set
+    long stride; // numbers of a row of singles
+    size_t size; // numbers of an array of singles, and some: equal places do not share a cache set
 } ck_Rows;
 
 ck_Rows ck_rows_of(const ck_Model *model);
@@ -67,14 +80,17 @@ CK_INLINE ck_Place ck_rows_at(const ck_Rows *rows, int row, int column) {
 }
 
 // Arrays for that many numbers a particle each, zeroed and aligned, in one block; NULL without memory. Free with free.
-double *ck_rows_allocate(const ck_Rows *rows, int count);
+ck_Real *ck_rows_allocate(const ck_Rows *rows, int count);
 
-// From [3*n] interleaved to tiles, and back. Padding is left alone.
-void ck_rows_load(const ck_Rows *rows, double *tiles, const double *vectors);
-void ck_rows_store(const ck_Rows *rows, double *vectors, const double *tiles);
+// From [3*n] interleaved, less an origin, to tiles, and back. Padding is left alone.
+void ck_rows_load(const ck_Rows *rows, ck_Real *tiles, const double *vectors, const double origin[3]);
+void ck_rows_store(const ck_Rows *rows, double *vectors, const ck_Real *tiles, const double origin[3]);
+
+// Tells tiles from another origin, by a shift, m, from theirs.
+void ck_rows_shift(const ck_Rows *rows, ck_Real *tiles, const ck_Real shift[3]);
 
 // [span*CK_STRIPE] 1 where a column has a neighbour reach columns to its right, else 0: springs from a row's end, its
 // padding and the last lane's to a next one do nothing.
-void ck_rows_mark_paired(const ck_Rows *rows, int reach, double *paired);
+void ck_rows_mark_paired(const ck_Rows *rows, int reach, ck_Real *paired);
 
 #endif

@@ -1,6 +1,7 @@
-// The order in which the sweeps over a cloth's rows come to them: ck_projection_step.
-#include "constraint_kernel.h"
+// The order in which the sweeps over a cloth's rows come to them: ck_projection_step. Compiled for either precision;
+// see single.h.
 #include "constraint_loop.h"
+#include "vector.h"
 
 // Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it; and where
 // halves meet, the lower one comes to the row that they share up to two waves after the upper one.
@@ -22,7 +23,7 @@ static int at_most(int depth, int most) {
 }
 
 static size_t row_bytes(const ck_ProjectedCloth *cloth) {
-    return 6 * sizeof(double) * (size_t)cloth->rows.stride;
+    return 6 * sizeof(ck_Real) * (size_t)cloth->rows.stride;
 }
 
 // One sweep a substep, down: a substep's first sweep finds the row below begun.
@@ -140,10 +141,20 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
         waves, &(ck_HalvesWork){run_both_ways, halves_meet, &ways, (long)substeps * (ways.waves[0] + ways.waves[1])});
 }
 
-void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
+// The origin follows a cloth that has gone farther than it is wide.
+static void follow(ck_ProjectedCloth *cloth) {
+    const ck_Real shift[] = {cloth->x[0], cloth->x[CK_STRIPE], cloth->x[2 * CK_STRIPE]};
+    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > cloth->size)) return;
+    ck_rows_shift(&cloth->rows, cloth->x, shift);
+    ck_rows_shift(&cloth->rows, cloth->start, shift);
+    for (int axis = 0; axis < 3; axis++) cloth->origin[axis] += shift[axis];
+}
+
+void ck_projection_run(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     cloth->sweeps = (long)substeps * cloth->rule.iterations;
     if (cloth->rule.iterations == 1)
         step_down(cloth, waves);
     else
         step_both_ways(cloth, substeps, waves);
+    if (CK_IS_SINGLE) follow(cloth);
 }

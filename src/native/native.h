@@ -37,8 +37,11 @@ typedef struct ck_Native {
     struct ck_Explicit *springs;     // of native-verlet alone
 } ck_Native;
 
-// The number of the natives' own setting: the most doubles of an instruction.
+// The numbers of the natives' own settings: the most doubles of an instruction; native-verlet's error a second that a
+// substep may make, as a share of the size; and single precision.
 #define CK_NATIVE_VECTORS 0
+#define CK_NATIVE_TOLERANCE 1
+#define CK_NATIVE_SINGLE 2
 
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
@@ -55,8 +58,11 @@ void ck_native_read(const void *state, double *position, double *velocity);
 // Forgets the contact force of the frame before.
 void ck_native_start_frame(ck_Native *native);
 
-// The loops over rows of the vectors that are set, or of the widest.
+// The loops over rows of the vectors that are set, or of the widest, in the precision that is set.
 const struct ck_Loops *ck_native_loops(const ck_Native *native);
+
+// Refuses single precision where a model is not all in rows.
+ck_Status ck_native_check_precision(const ck_Model *model, const ck_Settings *used, bool is_in_rows, ck_Error *error);
 
 // Notes the positions at the start of a substep.
 void ck_native_start_substep(ck_Native *native);

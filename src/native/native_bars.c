@@ -67,7 +67,9 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
     ck_Native *native;
-    ck_Status status = ck_leapfrog_create(&native, model, used, error);
+    ck_RowSprings springs;
+    ck_Status status = ck_native_check_precision(model, used, ck_projection_fits(model, &springs), error);
+    if (!status) status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
     return ck_native_hand_out(state, native, lay_in_rows(native, error));
 }
@@ -122,6 +124,15 @@ static const ck_Setting settings[] = {
      .unit = "1",
      .rule = "the processor's widest",
      .help = "doubles of an instruction at most, on regular cloths"},
+    {.name = "single",
+     .slot = CK_OWN + CK_NATIVE_SINGLE,
+     .is_whole = true,
+     .least = 0,
+     .most = 1,
+     .unit = "1",
+     .rule = "0: double precision",
+     .help = "1: single precision from an origin that moves with the cloth, on regular cloths that touch nothing",
+     .leaves_theory = true},
     {0},
 };
 

@@ -188,8 +188,13 @@ static ck_Status lay_out(Verlet *verlet, ck_Error *error) {
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
+    ck_RowSprings springs;
     ck_Status status = translate(model, wanted, used, ledger);
     if (status) return ck_fail(error, status, "out of memory");
+    status = ck_native_check_precision(model, used, ck_rows_fit(model, &springs), error);
+    if (status) return status;
+    if (ck_settings_own(used, CK_NATIVE_SINGLE, 0) > 0 && ck_settings_own(used, CK_NATIVE_TOLERANCE, 0) > 0)
+        return ck_fail(error, CK_REFUSED, "steps adapt in double precision only: set 'tolerance' or 'single'");
     Verlet *verlet = calloc(1, sizeof *verlet);
     if (!verlet) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     status = ck_native_create(&verlet->native, model, used, error);
@@ -321,6 +326,15 @@ static const ck_Setting settings[] = {
      .unit = "1/s",
      .rule = "none: all substeps are alike",
      .help = "error a second, over the size, that a substep may make; substeps then follow it and what is stable",
+     .leaves_theory = true},
+    {.name = "single",
+     .slot = CK_OWN + CK_NATIVE_SINGLE,
+     .is_whole = true,
+     .least = 0,
+     .most = 1,
+     .unit = "1",
+     .rule = "0: double precision",
+     .help = "1: single precision from an origin that moves with the cloth, on regular cloths that touch nothing",
      .leaves_theory = true},
     {0},
 };

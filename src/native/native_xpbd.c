@@ -206,9 +206,11 @@ static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
+    ck_RowSprings row_springs;
     translate(model, wanted, used, ledger);
     ck_Native *native;
-    ck_Status status = ck_native_create(&native, model, used, error);
+    ck_Status status = ck_native_check_precision(model, used, ck_projection_fits(model, &row_springs), error);
+    if (!status) status = ck_native_create(&native, model, used, error);
     if (status) return status;
     size_t springs = (size_t)model->spring_count;
     native->compliance = malloc(sizeof(double) * springs + 1);
@@ -279,6 +281,15 @@ static const ck_Setting settings[] = {
      .unit = "1",
      .rule = "the processor's widest",
      .help = "doubles of an instruction at most, on regular cloths"},
+    {.name = "single",
+     .slot = CK_OWN + CK_NATIVE_SINGLE,
+     .is_whole = true,
+     .least = 0,
+     .most = 1,
+     .unit = "1",
+     .rule = "0: double precision",
+     .help = "1: single precision from an origin that moves with the cloth, on regular cloths that touch nothing",
+     .leaves_theory = true},
     {0},
 };
 

@@ -12,10 +12,12 @@ ck_Status ck_native_lay_out(ck_Native *native, const ck_ProjectionRule *rule, ck
     const ck_SweepRule sweeps = rule_of(native, rule->projection);
     ck_projection_destroy(native->cloth);
     native->cloth = NULL;
-    if (ck_projection_fits(native->model, &springs))
-        return ck_projection_create(&native->cloth, ck_native_loops(native), native->model, &springs, rule,
-                                    native->position, native->velocity, native->other_velocity, native->inverse_mass,
-                                    error);
+    if (ck_projection_fits(native->model, &springs)) {
+        const ck_ProjectionSetup setup = {
+            ck_native_loops(native), native->model,       &springs, rule, native->position, native->velocity,
+            native->other_velocity,  native->inverse_mass};
+        return ck_projection_create(&native->cloth, &setup, error);
+    }
     if (native->sweeps)
         ck_sweep_list_set(native->sweeps, native->model, &sweeps);
     else

@@ -4,9 +4,6 @@
 
 #include "native.h"
 
-// The number of native-verlet's own setting: the error a second that a substep may make, as a share of the size.
-#define CK_NATIVE_TOLERANCE 1
-
 typedef struct ck_VerletPace ck_VerletPace;
 
 // NULL where no tolerance is set. Errors: CK_NO_MEMORY. Free with ck_verlet_pace_destroy, which accepts NULL.

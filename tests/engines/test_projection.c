@@ -93,9 +93,8 @@ static void compare_projection(const char *size, const char *springs, const char
     for (int kind = 0; ck_loops_at(kind); kind++) {
         ck_ProjectedCloth *cloth;
         double *result = results[kind] = calloc(3 * count, sizeof *x);
-        assert_int_equal(
-            ck_projection_create(&cloth, ck_loops_at(kind), model, &row_springs, &rule, x, v, before, weight, NULL),
-            CK_OK);
+        const ck_ProjectionSetup setup = {ck_loops_at(kind), model, &row_springs, &rule, x, v, before, weight};
+        assert_int_equal(ck_projection_create(&cloth, &setup, NULL), CK_OK);
         // in two calls, as two frames are
         ck_projection_step(cloth, substeps / 4, NULL);
         ck_projection_step(cloth, substeps - substeps / 4, NULL);

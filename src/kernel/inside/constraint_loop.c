@@ -19,7 +19,7 @@ enum {
 typedef struct Ends {
     ck_Place a, b;
     ck_SpringKind kind;
-    double *multiplier;
+    ck_Real *multiplier;
 } Ends;
 
 // What a stripe says of them.
@@ -52,7 +52,7 @@ CK_INLINE void move(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes s
     ck_lanes3_store(cloth->x + ends->a.tile, a);
 }
 
-CK_INLINE ck_Lanes3 span_of(const double *tiles, const Ends *ends) {
+CK_INLINE ck_Lanes3 span_of(const ck_Real *tiles, const Ends *ends) {
     return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
 }
 
@@ -78,7 +78,7 @@ static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth
     const ck_Lanes near = scale_of(&springs, squared);
     const ck_LaneMask is_long = ck_lanes_less(ck_lanes_all(cloth->long_scale), near);
     const ck_Lanes asked = asks_all ? along : ck_lanes_choose(is_long, along, square);
-    const ck_LaneMask has_turned = ck_lanes_less(asked, CK_TURNED_BAR * square);
+    const ck_LaneMask has_turned = ck_lanes_less(asked, ck_lanes_all((ck_Real)CK_TURNED_BAR) * square);
     const ck_Lanes length = ck_lanes_choose(has_turned, squared, along);
     move_bars(cloth, &ends, ck_lanes_choose(is_long, near * square / length, near),
               ck_lanes3_choose(has_turned, now, start), held ? HELD : 0);
@@ -122,7 +122,7 @@ CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, 
 CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, ck_Colour colour, int row, int vector) {
     const ck_Rows *rows = &cloth->rows;
     const ck_Place here = ck_rows_place(rows, row, vector), below = ck_rows_place(rows, row + 1, vector);
-    double *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + here.single : NULL;
+    ck_Real *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + here.single : NULL;
     switch (colour) {
     case CK_DOWN:
     case CK_DOWN_LATE: return (Ends){here, below, CK_STRUCTURAL, multiplier};
@@ -223,13 +223,21 @@ CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Visit *vi
     }
 }
 
-// x ← x + carried·(x − x_start) + push;  x_start ← x as it was. Velocities are what positions have moved by.
+// x ← x + carried·(x − x_start) + push;  x_start ← x as it was. Velocities are what positions have moved by; in single
+// precision with what rounding has kept a position from: of a short substep gravity's push is less than half a digit of
+// it.
 CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
+    const ck_Lanes free = ck_lanes_load(cloth->is_free + at.single);
     const ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile);
-    const ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->start + at.tile));
+    ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->start + at.tile));
+    if (CK_IS_SINGLE) moved = ck_lanes3_add(moved, ck_lanes3_load(cloth->kept + at.tile));
     const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved);
+    const ck_Lanes3 there = ck_lanes3_add_scaled(x, free, way);
     ck_lanes3_store(cloth->start + at.tile, x);
-    ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(x, ck_lanes_load(cloth->is_free + at.single), way));
+    ck_lanes3_store(cloth->x + at.tile, there);
+    if (CK_IS_SINGLE)
+        ck_lanes3_store(cloth->kept + at.tile,
+                        ck_lanes3_subtract(ck_lanes3_scale(free, way), ck_lanes3_subtract(there, x)));
     if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
 }
 
@@ -240,7 +248,7 @@ CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last
             const ck_Place at = ck_rows_place(&cloth->rows, row, i);
             predict_vector(cloth, (ck_Place){at.single + lane, at.tile + lane}, is_last);
         }
-    const size_t bytes = sizeof(double) * (size_t)cloth->rows.stride;
+    const size_t bytes = sizeof(ck_Real) * (size_t)cloth->rows.stride;
     for (int colour = CK_ALONG_LAST; colour <= CK_DOWN_LEFT && cloth->multipliers; colour++)
         memset(cloth->multiplier[colour] + row * cloth->rows.stride, 0, bytes);
 }

@@ -2,7 +2,7 @@
 #ifndef CK_CONSTRAINT_LOOP_H
 #define CK_CONSTRAINT_LOOP_H
 
-#include "constraint_kernel.h"
+#include "constraint_kind.h"
 #include "loops.h"
 
 // One colour of a row's springs: no two of a colour share a particle. DOWN_LATE is the DOWN of the row above.
@@ -19,41 +19,44 @@ typedef enum ck_Colour {
 
 // What a correction needs of a kind of springs.
 typedef struct ck_Compliant {
-    double compliance, gamma; // α̃ and γ̃
-    double share;             // w/((1 + γ̃)·W + α̃), both ends free
-    double alone;             // times which one end moves where the other is held
+    ck_Real compliance, gamma; // α̃ and γ̃
+    ck_Real share;             // w/((1 + γ̃)·W + α̃), both ends free
+    ck_Real alone;             // times which one end moves where the other is held
 } ck_Compliant;
 
 // Eight springs of one kind, a lane each; 0 where there is none: that moves nothing.
 typedef struct ck_Stripe {
-    double share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(4·L²)
-    double share_rest[CK_STRIPE]; // that times L, of bars times L²
-    double softness[CK_STRIPE];   // of springs share·α̃·m
-    double viscosity[CK_STRIPE];  // of springs share·γ̃
+    ck_Real share[CK_STRIPE];      // of springs relaxation·w/((1 + γ̃)·W + α̃), of bars relaxation/(4·L²)
+    ck_Real share_rest[CK_STRIPE]; // that times L, of bars times L²
+    ck_Real softness[CK_STRIPE];   // of springs share·α̃·m
+    ck_Real viscosity[CK_STRIPE];  // of springs share·γ̃
 } ck_Stripe;
 
 // A row's springs: those down, along it and across. All rows are alike.
 typedef enum ck_Direction { CK_IS_DOWN, CK_IS_ALONG, CK_IS_ACROSS, CK_DIRECTIONS } ck_Direction;
 
 struct ck_ProjectedCloth {
+    const ck_ProjectionKind *kind; // the first member
     const ck_Loops *loops;
     ck_Rows rows;
     ck_ProjectionRule rule;
-    double carried, push[3];            // what a substep moves of what the last one moved, and m on top of that
-    double mass, rest[CK_SPRING_KINDS]; // kg, m
+    ck_Real carried, push[3];            // what a substep moves of what the last one moved, and m on top of that
+    ck_Real mass, rest[CK_SPRING_KINDS]; // kg, m
     ck_Compliant compliant[CK_SPRING_KINDS];
     ck_Stripe *stripes[CK_DIRECTIONS]; // [span]
-    double long_scale;                 // of bars: the correction beyond which they are long
+    ck_Real long_scale;                // of bars: the correction beyond which they are long
     int terms;
-    long sweeps;       // of this call
-    int depth;         // of which so many run interleaved; of both ways: of those of one
-    double *x, *start; // tiles, m; start: before the last substep
-    double *before;    // m moved in the substep before the last one
-    double *is_free;
-    double *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
-    bool *is_held;                       // [rows] a pin in the row or the one below
-    long *far_from;                      // [rows] sweep from which on bars are looked at one by one
-    double *state, *springs, *multipliers;
+    long sweeps;            // of this call
+    int depth;              // of which so many run interleaved; of both ways: of those of one
+    double size, origin[3]; // m, of the cloth; and, of both; 0 but in single precision
+    ck_Real *x, *start;     // tiles, m; start: before the last substep
+    ck_Real *kept;          // m, in single precision: what rounding took of the last way; else not there
+    ck_Real *before;        // m moved in the substep before the last one
+    ck_Real *is_free;
+    ck_Real *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
+    bool *is_held;                        // [rows] a pin in the row or the one below
+    long *far_from;                       // [rows] sweep from which on bars are looked at one by one
+    ck_Real *state, *springs, *multipliers;
 };
 
 // What a cloth does not have is not in its loop; LATE and TURNED are a sweep's, HELD and FAR a row's.

@@ -18,7 +18,11 @@ typedef struct ck_ExplicitKind {
     void (*read)(const ck_Explicit *body, double *position, double *velocity);
 } ck_ExplicitKind;
 
+// In single precision there are rows alone, without what contact and steps that adapt ask for.
 extern const ck_ExplicitKind ck_explicit_rows, ck_explicit_list;
+#ifndef CK_SINGLE
+extern const ck_ExplicitKind ck_explicit_rows_single;
+#endif
 
 // The first member of every layout's own structure.
 struct ck_Explicit {

@@ -12,7 +12,7 @@ long CK_LOOP(ck_peak)(long rounds, double *result) {
     for (long round = 0; round < rounds; round++)
 #pragma GCC unroll 12
         for (int i = 0; i < CHAINS; i++)
-            chains[i] = ck_lanes_plus(ck_lanes_all(1e-6), chains[i], ck_lanes_all(0.999999));
+            chains[i] = ck_lanes_plus(ck_lanes_all((ck_Real)1e-6), chains[i], ck_lanes_all((ck_Real)0.999999));
     *result = 0;
     for (int i = 0; i < CHAINS; i++)
         for (int lane = 0; lane < CK_LANES; lane++) *result += chains[i][lane];

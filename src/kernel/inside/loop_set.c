@@ -4,30 +4,35 @@
 
 ck_ExplicitStart CK_LOOP(ck_explicit_start);
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
+ck_ProjectionVisits CK_LOOP(ck_projection_visits);
+ck_Peak CK_LOOP(ck_peak);
+#ifndef CK_SINGLE
 ck_NearRow CK_LOOP(ck_near_row);
 ck_TouchSlide CK_LOOP(ck_touch_slide);
 ck_TouchHold CK_LOOP(ck_touch_hold);
 ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_NearChunk CK_LOOP(ck_near_chunk);
-ck_ProjectionVisits CK_LOOP(ck_projection_visits);
 ck_SweepPacks CK_LOOP(ck_sweep_packs);
-ck_Peak CK_LOOP(ck_peak);
+#endif
 
 extern const ck_Loops CK_LOOP(ck_loops);
 const ck_Loops CK_LOOP(ck_loops) = {
     .vectors = CK_VECTORS_NAME,
     .lanes = CK_LANES,
     .fuses = CK_FUSES,
+    .is_single = CK_IS_SINGLE,
     .explicit_start = CK_LOOP(ck_explicit_start),
     .explicit_row = CK_LOOP(ck_explicit_row),
+    .projection_visits = CK_LOOP(ck_projection_visits),
+    .peak = CK_LOOP(ck_peak),
+#ifndef CK_SINGLE
     .near_row = CK_LOOP(ck_near_row),
     .touch_slide = CK_LOOP(ck_touch_slide),
     .touch_hold = CK_LOOP(ck_touch_hold),
     .list_start = CK_LOOP(ck_list_start),
     .list_chunk = CK_LOOP(ck_list_chunk),
     .near_chunk = CK_LOOP(ck_near_chunk),
-    .projection_visits = CK_LOOP(ck_projection_visits),
     .sweep_packs = CK_LOOP(ck_sweep_packs),
-    .peak = CK_LOOP(ck_peak),
+#endif
 };

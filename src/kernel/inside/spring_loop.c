@@ -19,6 +19,7 @@ typedef struct Ends {
 // one's result with another's work. Coincident particles push nowhere: their scale is a number.
 CK_INLINE void pull(const struct ck_ExplicitCloth *cloth, ck_Lanes3 *d, ck_Lanes *scale, const Ends *ends,
                     const int count, const int terms) {
+    const ck_Real damping = (ck_Real)cloth->springs.damping;
     ck_Lanes squared[SPRINGS], inverse[SPRINGS];
     for (int i = 0; i < count; i++) {
         d[i] = ck_lanes3_subtract(ck_lanes3_load(cloth->x + ends[i].b), ck_lanes3_load(cloth->x + ends[i].a));
@@ -26,12 +27,12 @@ CK_INLINE void pull(const struct ck_ExplicitCloth *cloth, ck_Lanes3 *d, ck_Lanes
     }
     ck_lanes_inverse_root(inverse, squared, count);
     for (int i = 0; i < count; i++) {
-        const double stiffness = cloth->springs.stiffness[ends[i].kind];
+        const ck_Real stiffness = (ck_Real)cloth->springs.stiffness[ends[i].kind];
         ck_Lanes slack = ck_lanes_all(cloth->slack[ends[i].kind]);
         if (terms & DAMPED) {
             ck_Lanes3 v = ck_lanes3_subtract(ck_lanes3_load(cloth->predicted + ends[i].b),
                                              ck_lanes3_load(cloth->predicted + ends[i].a));
-            slack = ck_lanes_minus(slack, cloth->springs.damping * ck_lanes3_dot(v, d[i]), inverse[i]);
+            slack = ck_lanes_minus(slack, damping * ck_lanes3_dot(v, d[i]), inverse[i]);
         }
         scale[i] = ck_lanes_minus(ck_lanes_all(stiffness), slack, inverse[i]);
     }
@@ -95,7 +96,7 @@ CK_INLINE void pull_vector(const struct ck_ExplicitCloth *cloth, Pulls *pulls, i
 // a·dt/2: its start, too; else v ← v + a·dt/2.
 CK_INLINE void finish(const struct ck_ExplicitCloth *cloth, ck_Place at, ck_Lanes3 force, bool advances,
                       const int terms) {
-    const double dt = cloth->dt;
+    const ck_Real dt = cloth->dt;
     const ck_Lanes gain = ck_lanes_load(cloth->gain + at.single);
     ck_Lanes3 v = ck_lanes3_load(cloth->v + at.tile);
     if (terms & DRAGGED)
@@ -120,7 +121,7 @@ CK_INLINE void end_vector(const struct ck_ExplicitCloth *cloth, const Pulls *pul
     ck_Place at = ck_rows_place(&cloth->rows, row, vector);
     at = (ck_Place){at.single + lane, at.tile + lane};
     if (row + 1 < cloth->rows.rows) {
-        double *below = cloth->a + at.tile + 3 * cloth->rows.stride;
+        ck_Real *below = cloth->a + at.tile + 3 * cloth->rows.stride;
         const bool has_begun = (terms & BENT) && row > 0;
         ck_lanes3_store(below, has_begun ? ck_lanes3_add(ck_lanes3_load(below), pulls->below) : pulls->below);
     }
@@ -160,7 +161,7 @@ CK_INLINE void pass(const struct ck_ExplicitCloth *cloth, int row, bool advances
 // x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  v ← v + a·dt/2
 ck_ExplicitStart CK_LOOP(ck_explicit_start);
 void CK_LOOP(ck_explicit_start)(const struct ck_ExplicitCloth *cloth, int row) {
-    const ck_Lanes dt = ck_lanes_all(cloth->dt), half = ck_lanes_all(0.5 * cloth->dt);
+    const ck_Lanes dt = ck_lanes_all(cloth->dt), half = ck_lanes_all((ck_Real)0.5 * cloth->dt);
     const long end = ck_rows_place(&cloth->rows, row + 1, 0).tile;
     for (long i = ck_rows_place(&cloth->rows, row, 0).tile; i < end; i += CK_LANES) {
         const ck_Lanes a = ck_lanes_load(cloth->a + i), v = ck_lanes_plus(ck_lanes_load(cloth->v + i), half, a);

@@ -10,17 +10,18 @@ typedef struct ck_ExplicitCloth {
     const ck_Loops *loops;
     ck_Rows rows;
     ck_RowSprings springs;
-    double slack[CK_SPRING_KINDS];    // N: k·L
-    double dt, resistance, weight[3]; // s; N·s/m and N on each particle, of drag and of what pulls on all
+    ck_Real slack[CK_SPRING_KINDS];    // N: k·L
+    ck_Real dt, resistance, weight[3]; // s; N·s/m and N on each particle, of drag and of what pulls on all
     int terms;
     uint32_t substeps; // of this call
     // tiles; v, between substeps of a call, is half a substep ahead
-    double *x, *v, *predicted;
-    double *a;    // acceleration at the end of a call, else the springs' forces from above so far
-    double *gain; // m/s a substep for each N: dt/m where free, else 0
-    double *paired, *far_paired;
+    double size, origin[3]; // m, of the cloth; and, of x; 0 but in single precision
+    ck_Real *x, *v, *predicted;
+    ck_Real *a;    // acceleration at the end of a call, else the springs' forces from above so far
+    ck_Real *gain; // m/s a substep for each N: dt/m where free, else 0
+    ck_Real *paired, *far_paired;
     uint8_t *near; // [span] of a row: a bit for each of a vector that may touch
-    double *state, *pairs;
+    ck_Real *state, *pairs;
 } ck_ExplicitCloth;
 
 // What a scene does not have is not in its loop.
