@@ -331,6 +331,29 @@ ck_Status ck_answer_findings(ck_Arguments *arguments, const char *scene, ck_Erro
     return status;
 }
 
+#define COST "cost_to_"
+
+// What it costs each engine to be as right as is asked, where it is at all.
+static void add_bench_costs(ck_Answer *answer, const ck_CsvTable *table) {
+    static const ck_AnswerColumn columns[] = {
+        {"particles", "particles", 9, "%.0f"},        {"engine", "engine", -16, NULL},
+        {"setup", "springs and settings", -38, NULL}, {"error", "error", -11, NULL},
+        {"ms_per_second", "ms CPU/s", 9, "%.3g"},     {NULL, NULL, 0, NULL}};
+    bool is_begun = false;
+    for (int i = 0; i < table->row_count; i++) {
+        const char *metric = ck_csv_text_of(table, i, "metric");
+        const double value = ck_csv_number_of(table, i, "value");
+        if (strncmp(metric, COST, strlen(COST)) || isnan(value)) continue;
+        if (!is_begun) ck_answer_table(answer, "costs", "\nthe cheapest settings within an error of a fine reference", columns);
+        is_begun = true;
+        ck_answer_number(answer, ck_csv_number_of(table, i, "particles"));
+        ck_answer_text(answer, ck_csv_text_of(table, i, "engine"));
+        ck_answer_text(answer, ck_csv_text_of(table, i, "setup"));
+        ck_answer_text(answer, metric + strlen(COST));
+        ck_answer_number(answer, 1e3 * value);
+    }
+}
+
 ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *error) {
     static const ck_AnswerColumn columns[] = {
         {"body", "body", -8, NULL},     {"particles", "particles", 9, "%.0f"},        {"engine", "engine", -16, NULL},
@@ -347,6 +370,7 @@ ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *er
         ck_answer_text(answer, ck_csv_text_of(&table, i, "setup"));
         ck_answer_number(answer, value);
     }
+    if (!status) add_bench_costs(answer, &table);
     ck_csv_table_free(&table);
     return status;
 }

@@ -3,9 +3,9 @@
 // A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
 // corrected vector by vector of eight, however wide the processor's are: those along it from even columns of a run,
 // then from odd ones; then of bars those to the next row, straight down, down right and down left, of springs those
-// down right and down left, and straight down. One sweep goes down the rows, and of springs comes to those straight
-// down once the row below is done. Of several, one half goes from the first and the last row to the middle, the other
-// half the same way back. That is the order of ck_sweep_order and ck_sweep_is_turned.
+// down right and down left, and straight down from the row above. Sweeps go down the rows; but of several over bars one
+// half goes from the first and the last row to the middle, the other half the same way back. That is the order of
+// ck_sweep_order and ck_sweep_is_turned.
 #ifndef CK_CONSTRAINT_KERNEL_H
 #define CK_CONSTRAINT_KERNEL_H
 
@@ -54,7 +54,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSet
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 
 // As many substeps, without allocation; sweeps run interleaved, a few rows apart, which changes no result.
-// The same bits however many threads share the waves, of which two find work where a substep has several sweeps; on
+// The same bits however many threads share the waves, of which two find work where bars are swept several times; on
 // which processors, loops.h says.
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
 

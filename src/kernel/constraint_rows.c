@@ -58,7 +58,7 @@ static void set_rule(ck_ProjectedCloth *cloth, const ck_RowSprings *springs, con
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++) cloth->rest[kind] = (ck_Real)springs->rest[kind];
     cloth->carried = rule->carry * rule->keep;
     for (int axis = 0; axis < 3; axis++) cloth->push[axis] = dt * rule->push[axis];
-    cloth->terms = rule->projection == CK_PROJECT_BARS ? CK_SWEEP_BARS : rule->iterations == 1 ? CK_SWEEP_LATE : 0;
+    cloth->terms = rule->projection == CK_PROJECT_BARS ? CK_SWEEP_BARS : 0;
     cloth->long_scale = 0.25 * rule->relaxation * (CK_LONG_BAR - 1);
     if (is_elastic)
         cloth->terms |= (springs->damping > 0 ? CK_SWEEP_DAMPED : 0) | (rule->iterations > 1 ? CK_SWEEP_REPEATED : 0);

@@ -40,9 +40,11 @@
 // These may stand at any number and share memory with it.
 #ifdef CK_SINGLE
 #define CK_LANES (CK_VECTOR_BYTES / 4)
+#define CK_LANE_BITS_BUT_SIGN INT32_MAX
 typedef int32_t ck_LaneBit;
 #else
 #define CK_LANES (CK_VECTOR_BYTES / 8)
+#define CK_LANE_BITS_BUT_SIGN INT64_MAX
 typedef int64_t ck_LaneBit;
 #endif
 typedef ck_Real ck_Lanes __attribute__((vector_size(CK_VECTOR_BYTES), aligned(sizeof(ck_Real)), may_alias));
@@ -75,7 +77,7 @@ CK_INLINE ck_Lanes ck_lanes_all(ck_Real value) {
 #endif
 
 CK_INLINE ck_Lanes ck_lanes_absolute(ck_Lanes a) {
-    return (ck_Lanes)((ck_LaneBits)a & ~((ck_LaneBit)1 << (8 * sizeof(ck_LaneBit) - 1)));
+    return (ck_Lanes)((ck_LaneBits)a & CK_LANE_BITS_BUT_SIGN);
 }
 
 // A vector of a tile: its three coordinates stand a stripe apart.

@@ -34,12 +34,12 @@ static long when_visited(const Way *way, const ck_Spring *spring) {
     const ck_Rows *rows = &way->rows;
     int row = spring->a / rows->columns, right = spring->b % rows->columns - spring->a % rows->columns;
     int column = spring->a % rows->columns - (right < 0), vector = column % rows->span;
-    bool are_bars = way->projection == CK_PROJECT_BARS, is_late = way->goes_down && !are_bars;
+    bool are_bars = way->projection == CK_PROJECT_BARS;
     // the colours' numbers have the order of either sweep
     ck_Colour colour = are_bars ? CK_DOWN : CK_DOWN_LATE;
     if (spring->kind == CK_SHEAR) colour = right > 0 ? CK_DOWN_RIGHT : CK_DOWN_LEFT;
     if (spring->b / rows->columns == row) colour = vector + 1 == rows->span ? CK_ALONG_LAST : vector % 2;
-    const long turn = turn_of(way, row + (is_late && colour == CK_DOWN_LATE));
+    const long turn = turn_of(way, row + (colour == CK_DOWN_LATE));
     return (turn * CK_COLOUR_COUNT + colour) * rows->stride + ck_rows_at(rows, 0, column).single;
 }
 
@@ -47,7 +47,7 @@ ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
     if (!ck_projection_fits(model, &springs)) return CK_OK;
-    const Way way = {ck_rows_of(model), projection, sweeps == 1};
+    const Way way = {ck_rows_of(model), projection, sweeps == 1 || projection == CK_PROJECT_SPRINGS};
     Visit *visits = malloc(sizeof *visits * (size_t)model->spring_count);
     if (!visits) return CK_NO_MEMORY;
     for (int i = 0; i < model->spring_count; i++) visits[i] = (Visit){when_visited(&way, &model->springs[i]), i};

@@ -18,11 +18,12 @@ typedef enum ck_Projection {
 // that of constraint_kernel.h where it takes the model, else the model's. Errors: CK_NO_MEMORY.
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order);
 
-// True where a substep's sweep goes through that order backwards: of several, the second half. Sweeps and their
-// transposes in turn act as the gradient of something; those in one order only push in circles, too, and a sheet whose
-// bars are more than its freedoms takes energy out of that, and shakes for ever.
-static inline bool ck_sweep_is_turned(uint32_t sweep, uint32_t sweeps) {
-    return sweep >= sweeps - sweeps / 2;
+// True where a substep's sweep goes through that order backwards: of several over bars, the second half. Sweeps and
+// their transposes in turn act as the gradient of something; those in one order only push in circles, too, and a sheet
+// whose bars are more than its freedoms takes energy out of that, and shakes for ever. Compliant springs lose what they
+// shake by, and what is torn far needs six times as many sweeps both ways.
+static inline bool ck_sweep_is_turned(ck_Projection projection, uint32_t sweep, uint32_t sweeps) {
+    return projection == CK_PROJECT_BARS && sweep >= sweeps - sweeps / 2;
 }
 
 #ifdef __cplusplus

@@ -13,6 +13,8 @@
 #define DEPTH_WIDE 2
 // Bytes that a core's first cache holds at least.
 #define FIRST_CACHE (1 << 15)
+// Rows of a half at least that are worth a thread: each sweep waits twice for the other half.
+#define LEAST_PLACES 16
 
 static int at_least(int depth, int least) {
     return depth > least ? depth : least;
@@ -26,7 +28,7 @@ static size_t row_bytes(const ck_ProjectedCloth *cloth) {
     return 6 * sizeof(ck_Real) * (size_t)cloth->rows.stride;
 }
 
-// One sweep a substep, down: a substep's first sweep finds the row below begun.
+// Sweeps down the rows: a substep's first one finds the row below begun.
 static void run_down(void *state, long block, int wave) {
     const ck_ProjectedCloth *cloth = state;
     const int rows = cloth->rows.rows;
@@ -35,7 +37,9 @@ static void run_down(void *state, long block, int wave) {
         const int row = wave - LAG * i;
         const long sweep = block * cloth->depth + i;
         if (row < 0 || row >= rows || sweep >= cloth->sweeps) continue;
-        visits.at[visits.count++] = (ck_Visit){sweep, row, {row == 0 ? 0 : -1, row + 1 < rows ? row + 1 : -1}};
+        const bool begins = sweep % cloth->rule.iterations == 0;
+        visits.at[visits.count++] =
+            (ck_Visit){sweep, row, {begins && row == 0 ? 0 : -1, begins && row + 1 < rows ? row + 1 : -1}};
     }
     cloth->loops->projection_visits(cloth, &visits);
 }
@@ -119,9 +123,9 @@ static bool halves_meet(void *state, long step) {
 }
 
 // A cloth beyond the second cache has its sweeps close together, so that it comes to it but once; else as many are
-// under way in each half as the first cache holds the rows of.
-static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps) {
-    const size_t bytes = row_bytes(cloth), together = 2 * LAG * bytes;
+// under way in each half as the first cache holds the rows of, of both halves or of a thread's own.
+static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps, int halves) {
+    const size_t bytes = row_bytes(cloth), together = (size_t)halves * LAG * bytes;
     const int depth = ck_waves_depth(NULL, sweeps, cloth->rows.rows, LAG, bytes) > 1
                           ? sweeps
                           : (int)((FIRST_CACHE + together - 1) / together),
@@ -134,7 +138,8 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
     BothWays ways = {.cloth = cloth, .out = sweeps / 2, .upper = (rows - 1) / 2};
     ways.in = sweeps - ways.out;
     ways.places = rows - ways.upper;
-    ways.lag = lag_of(cloth, ways.places, ways.in);
+    if (ways.places < LEAST_PLACES) waves = NULL;
+    ways.lag = lag_of(cloth, ways.places, ways.in, waves ? 1 : 2);
     ways.waves[0] = ways.places + ways.lag * (ways.in - 1);
     ways.waves[1] = ways.places + ways.lag * (ways.out - 1);
     ck_waves_run_halves(
@@ -152,7 +157,7 @@ static void follow(ck_ProjectedCloth *cloth) {
 
 void ck_projection_run(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     cloth->sweeps = (long)substeps * cloth->rule.iterations;
-    if (cloth->rule.iterations == 1)
+    if (cloth->rule.iterations == 1 || cloth->rule.projection == CK_PROJECT_SPRINGS)
         step_down(cloth, waves);
     else
         step_both_ways(cloth, substeps, waves);

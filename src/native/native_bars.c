@@ -34,7 +34,7 @@ static void sweep(ck_Native *native, bool is_turned) {
 }
 
 static bool relax(ck_Native *native) {
-    ck_native_sweep(native, sweep, NULL);
+    ck_native_sweep(native, CK_PROJECT_BARS, sweep, NULL);
     return true;
 }
 
@@ -115,7 +115,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "1",
-     .help = "threads that share a step, on regular cloths"},
+     .help = "threads that share a step, on regular cloths; two where a substep has several sweeps"},
     {.name = "vectors",
      .slot = CK_OWN + CK_NATIVE_VECTORS,
      .is_whole = true,
@@ -123,7 +123,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "the processor's widest",
-     .help = "doubles of an instruction at most, on regular cloths"},
+     .help = "doubles of an instruction at most"},
     {.name = "single",
      .slot = CK_OWN + CK_NATIVE_SINGLE,
      .is_whole = true,

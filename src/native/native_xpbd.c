@@ -105,7 +105,7 @@ static void substep(ck_Native *native) {
         }
     }
     ck_native_drive(native);
-    ck_native_sweep(native, sweep, native->bending ? sweep_hinges : NULL);
+    ck_native_sweep(native, CK_PROJECT_SPRINGS, sweep, native->bending ? sweep_hinges : NULL);
     for (int i = 0; i < 3 * model->particle_count; i++)
         native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
     ck_native_drive_speed(native);
@@ -280,7 +280,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "the processor's widest",
-     .help = "doubles of an instruction at most, on regular cloths"},
+     .help = "doubles of an instruction at most"},
     {.name = "single",
      .slot = CK_OWN + CK_NATIVE_SINGLE,
      .is_whole = true,

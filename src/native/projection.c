@@ -30,13 +30,14 @@ void ck_native_soften(ck_Native *native, ck_Projection projection) {
     if (native->sweeps) ck_sweep_list_set(native->sweeps, native->model, &sweeps);
 }
 
-void ck_native_sweep(ck_Native *native, void (*sweep)(ck_Native *native, bool is_turned),
+void ck_native_sweep(ck_Native *native, ck_Projection projection, void (*sweep)(ck_Native *native, bool is_turned),
                      void (*between)(ck_Native *native)) {
     ck_SweepList *sweeps = native->sweeps;
     const bool is_alone = !between && !native->contact && !native->rigid;
     if (sweeps) ck_sweep_list_begin(sweeps, native->position, native->start);
     for (uint32_t i = 0; i < native->iterations; i++) {
-        const bool is_turned = ck_sweep_is_turned(i, native->iterations), is_last = i + 1 == native->iterations;
+        const bool is_turned = ck_sweep_is_turned(projection, i, native->iterations),
+                   is_last = i + 1 == native->iterations;
         if (sweeps)
             ck_sweep_list_sweep(sweeps, is_turned);
         else

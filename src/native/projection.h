@@ -22,7 +22,7 @@ ck_StepResult ck_native_step_frame(ck_Native *native, void (*substep)(ck_Native 
 // A substep's sweeps over the list of springs, each followed by what else holds particles: in packs, or where there are
 // none by sweep, one by one.
 //   between  NULL, or what comes after each sweep over springs
-void ck_native_sweep(ck_Native *native, void (*sweep)(ck_Native *native, bool is_turned),
+void ck_native_sweep(ck_Native *native, ck_Projection projection, void (*sweep)(ck_Native *native, bool is_turned),
                      void (*between)(ck_Native *native));
 
 #endif

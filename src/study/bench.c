@@ -1,6 +1,7 @@
 #include "bench.h"
 
 #include "bench_body.h"
+#include "bench_front.h"
 #include "engines.h"
 #include "loops.h"
 #include "process.h"
@@ -62,6 +63,9 @@ static const Candidate candidates[] = {
     {"native-verlet", "vectors of 2", {0}, VERLET, .own = "vectors", .value = 2},
     {"native-bars", "10 iterations, vectors of 2", {.iterations = 10}, BARS, .own = "vectors", .value = 2},
     {"native-xpbd", "10 iterations, vectors of 2", {.iterations = 10}, XPBD, .own = "vectors", .value = 2},
+    {"native-verlet", "single precision", {0}, VERLET, .own = "single", .value = 1},
+    {"native-bars", "10 iterations, single precision", {.iterations = 10}, BARS, .own = "single", .value = 1},
+    {"native-xpbd", "10 iterations, single precision", {.iterations = 10}, XPBD, .own = "single", .value = 1},
     {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {33, 19}, .is_damped = true},
     {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
     {"native-rope", "4 iterations", {.iterations = 4}, BARS},
@@ -302,7 +306,8 @@ static ck_Status build_stretched(ck_Model *model, const ck_BenchBody *body, ck_E
 
 // What projects, by one thread and with the vectors that there are: the rest take as many sweeps.
 static bool has_residual(const Candidate *candidate) {
-    return candidate->settings.iterations && !candidate->settings.threads && !sets(candidate, "vectors");
+    return candidate->settings.iterations && !candidate->settings.threads && !sets(candidate, "vectors") &&
+           !sets(candidate, "single");
 }
 
 static ck_Status add_residuals(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptions *options, ck_Error *error) {
@@ -392,6 +397,65 @@ static ck_Status grow(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *err
     return status;
 }
 
+// Cloths that are let go, of one stiffness each: what it costs to be right.
+typedef struct Front {
+    ck_BenchBody body;
+    double stiffness; // N/m
+} Front;
+
+static const Front fronts[] = {{{"cloth", CK_BENCH_CLOTH, 20, 20}, 1e3},
+                               {{"cloth", CK_BENCH_CLOTH, 64, 64}, 1e3},
+                               {{"cloth", CK_BENCH_CLOTH, 64, 64}, 1e6}};
+#define FRONTS (sizeof fronts / sizeof *fronts)
+// CPU s of a run at most.
+#define FRONT_BUDGET 3
+
+static void add_cost(ck_Csv *csv, const Front *front, const ck_BenchFront *built, const ck_Engine *engine, int target,
+                     const ck_BenchCost *cost, const char *reason, int rounds) {
+    char setup[100], metric[40], why[200];
+    double times[MAX_ROUNDS], quartiles[3];
+    const bool is_found = !isnan(cost->seconds);
+    times[0] = cost->seconds;
+    for (int i = 1; i < rounds && is_found; i++)
+        ck_bench_front_run(built, engine, &cost->settings, INFINITY, &times[i], why);
+    if (is_found) find_quartiles(times, rounds, quartiles);
+    int used = snprintf(setup, sizeof setup, "%g N/m", front->stiffness);
+    if (is_found && used > 0)
+        used += snprintf(setup + used, sizeof setup - (size_t)used, ", %u substeps", cost->settings.substeps);
+    if (is_found && cost->settings.iterations)
+        snprintf(setup + used, sizeof setup - (size_t)used, ", %u iterations", cost->settings.iterations);
+    snprintf(metric, sizeof metric, "cost_to_%g_percent", 100 * ck_bench_targets[target]);
+    add_row(csv, &front->body, &built->model, engine->name, setup, metric, "s/s", is_found ? quartiles : NULL, 1,
+            is_found  ? NULL
+            : *reason ? reason
+                      : "no settings within the budget get there");
+}
+
+// Each engine's cheapest settings within an error, by the same search; the reference and how well it is known first.
+static ck_Status add_front(ck_Csv *csv, const Front *front, const ck_BenchOptions *options, ck_Error *error) {
+    ck_BenchFront built;
+    if (options->progress) options->progress(front->body.name, "reference");
+    ck_Status status = ck_bench_front_build(&built, &front->body, front->stiffness, error);
+    const double each[3] = {built.uncertainty, built.uncertainty, built.uncertainty};
+    char setup[40];
+    snprintf(setup, sizeof setup, "%g N/m", front->stiffness);
+    if (!status)
+        add_row(csv, &front->body, &built.model, "native-verlet", setup, "reference_uncertainty", "1", each, 1, NULL);
+    for (int i = 0; i < ck_engine_count() && !status; i++) {
+        const ck_Engine *engine = ck_engine_at(i);
+        ck_BenchCost costs[CK_BENCH_TARGETS];
+        char reason[200];
+        if (engine->method == CK_METHOD_STILL) continue;
+        if (options->progress) options->progress(front->body.name, engine->name);
+        ck_bench_front_search(&built, engine, FRONT_BUDGET, costs, reason);
+        for (int target = 0; target < CK_BENCH_TARGETS; target++)
+            add_cost(csv, front, &built, engine, target, &costs[target], reason,
+                     options->rounds < 3 ? options->rounds : 3);
+    }
+    ck_bench_front_free(&built);
+    return status;
+}
+
 static bool is_taken(const ck_BenchBody *body, const ck_BenchOptions *options) {
     return body->kind == CK_BENCH_ROPE || (int)body->rows <= options->largest;
 }
@@ -408,5 +472,7 @@ ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *
         if (is_taken(&bodies[i], options)) status = add_seconds(csv, &bodies[i], options, error);
     for (size_t i = 0; i < 2 && !status; i++)
         if (is_taken(&bodies[i], options)) status = add_residuals(csv, &bodies[i], options, error);
+    for (size_t i = 0; i < FRONTS && !status; i++)
+        if (is_taken(&fronts[i].body, options)) status = add_front(csv, &fronts[i], options, error);
     return status ? status : grow(csv, options, error);
 }

@@ -17,7 +17,8 @@ typedef struct ck_BenchOptions {
 // 32, engines interleaved: time of a step, of an update (one spring in one
 // iteration), its ratio to the native one's, share of what the processor could do, gain of two threads, cost of a
 // simulated second at each engine's own settings. For the smaller cloths, sweeps and time from 10 % to 4 % strain. Then
-// native-verlet as the cloth grows. Errors: CK_NO_MEMORY.
+// what it costs each engine to be within 1 % and 0.1 % of a fine reference: cost_to_1_percent, by the same search for
+// all (bench_front.h). Then native-verlet as the cloth grows. Errors: CK_NO_MEMORY.
 ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error);
 
 #endif

@@ -52,7 +52,8 @@ static void plain_substep(const ck_Model *model, const ck_ProjectionRule *rule, 
     bool *is_far = calloc(2 * rows, sizeof *is_far), *was_far = is_far + rows;
     for (uint32_t sweep = 0; sweep < rule->iterations; sweep++) {
         for (int k = 0; k < model->spring_count; k++) {
-            const int i = order[ck_sweep_is_turned(sweep, rule->iterations) ? model->spring_count - 1 - k : k];
+            const int i =
+                order[ck_sweep_is_turned(rule->projection, sweep, rule->iterations) ? model->spring_count - 1 - k : k];
             const ck_Spring *spring = &model->springs[i];
             const int row = spring->a / model->columns;
             plain_project(model, rule, spring, start, x, &multipliers[i], was_far[row], &is_far[row]);
@@ -194,7 +195,8 @@ static void compare_list(const char *body, ck_Projection projection, uint32_t it
         // twice, as two substeps are: the second forgets the first
         for (int substep = 0; substep < 2; substep++) {
             ck_sweep_list_begin(list, moved, model->position);
-            for (uint32_t i = 0; i < iterations; i++) ck_sweep_list_sweep(list, ck_sweep_is_turned(i, iterations));
+            for (uint32_t i = 0; i < iterations; i++)
+                ck_sweep_list_sweep(list, ck_sweep_is_turned(projection, i, iterations));
         }
         ck_sweep_list_read(list, results[kind]);
         ck_sweep_list_destroy(list);
@@ -202,7 +204,7 @@ static void compare_list(const char *body, ck_Projection projection, uint32_t it
     bool is_far;
     for (uint32_t sweep = 0; sweep < iterations; sweep++)
         for (int k = 0; k < model->spring_count; k++) {
-            const int i = ck_sweep_is_turned(sweep, iterations) ? model->spring_count - 1 - k : k;
+            const int i = ck_sweep_is_turned(projection, sweep, iterations) ? model->spring_count - 1 - k : k;
             plain_project(model, &rule, &model->springs[i], model->position, x, &multiplier[i], true, &is_far);
         }
     if (has_packs)

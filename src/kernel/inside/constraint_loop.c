@@ -9,7 +9,6 @@ enum {
     DAMPED = CK_SWEEP_DAMPED,
     REPEATED = CK_SWEEP_REPEATED,
     BARS = CK_SWEEP_BARS,
-    LATE = CK_SWEEP_LATE,
     TURNED = CK_SWEEP_TURNED,
     HELD = CK_SWEEP_HELD,
     FAR = CK_SWEEP_FAR
@@ -199,14 +198,11 @@ static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *c
 static const ck_Colour order_of_bars[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD,  CK_ALONG_LAST,
                                                  CK_DOWN,       CK_DOWN_RIGHT, CK_DOWN_LEFT};
 static const ck_Colour order_of_springs[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD, CK_ALONG_LAST,
-                                                    CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN};
-static const ck_Colour order_of_late_springs[COLOURS] = {CK_ALONG_EVEN, CK_ALONG_ODD, CK_ALONG_LAST,
-                                                         CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN_LATE};
+                                                    CK_DOWN_RIGHT, CK_DOWN_LEFT, CK_DOWN_LATE};
 
 CK_INLINE ck_Colour colour_at(int turn, const int terms) {
     const int at = terms & TURNED ? COLOURS - 1 - turn : turn;
-    if (terms & BARS) return order_of_bars[at];
-    return (terms & LATE ? order_of_late_springs : order_of_springs)[at];
+    return (terms & BARS ? order_of_bars : order_of_springs)[at];
 }
 
 CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Visit *visits, int count, ck_Colour colour,
@@ -269,23 +265,20 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Visits *visi
             project_colour(cloth, visits->at + first, together, colour_at(turn, terms), terms);
 }
 
-CK_INLINE void run_either_way(const ck_ProjectedCloth *cloth, const ck_Visits *visits, const int terms) {
-    if (visits->is_turned)
-        run_colours(cloth, visits, terms | TURNED);
-    else
-        run_colours(cloth, visits, terms);
-}
-
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.
 ck_ProjectionVisits CK_LOOP(ck_projection_visits);
 void CK_LOOP(ck_projection_visits)(const ck_ProjectedCloth *shared, const ck_Visits *visits) {
     const ck_ProjectedCloth cloth = *shared;
     switch (cloth.terms) {
-    case BARS: run_either_way(&cloth, visits, BARS); break;
-    case LATE: run_colours(&cloth, visits, LATE); break;
-    case LATE | DAMPED: run_colours(&cloth, visits, LATE | DAMPED); break;
-    case 0: run_either_way(&cloth, visits, 0); break;
-    case REPEATED: run_either_way(&cloth, visits, REPEATED); break;
-    default: run_either_way(&cloth, visits, REPEATED | DAMPED); break;
+    case BARS:
+        if (visits->is_turned)
+            run_colours(&cloth, visits, BARS | TURNED);
+        else
+            run_colours(&cloth, visits, BARS);
+        break;
+    case 0: run_colours(&cloth, visits, 0); break;
+    case DAMPED: run_colours(&cloth, visits, DAMPED); break;
+    case REPEATED: run_colours(&cloth, visits, REPEATED); break;
+    default: run_colours(&cloth, visits, REPEATED | DAMPED); break;
     }
 }

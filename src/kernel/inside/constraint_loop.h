@@ -59,15 +59,14 @@ struct ck_ProjectedCloth {
     ck_Real *state, *springs, *multipliers;
 };
 
-// What a cloth does not have is not in its loop; LATE and TURNED are a sweep's, HELD and FAR a row's.
+// What a cloth does not have is not in its loop; TURNED is a sweep's, HELD and FAR a row's.
 enum {
     CK_SWEEP_DAMPED = 1,
     CK_SWEEP_REPEATED = 2,
     CK_SWEEP_BARS = 4,
-    CK_SWEEP_LATE = 8,    // springs down come once the row below is done
-    CK_SWEEP_TURNED = 16, // colours come in the reverse order
-    CK_SWEEP_HELD = 32,
-    CK_SWEEP_FAR = 64
+    CK_SWEEP_TURNED = 8, // colours come in the reverse order
+    CK_SWEEP_HELD = 16,
+    CK_SWEEP_FAR = 32
 };
 
 // A sweep at a row; and the rows, or -1, that are to begin the substep before it.

@@ -60,7 +60,8 @@ static double correct(const Substep *step, const ck_Spring *spring, const double
 }
 
 static bool is_turned(const Substep *step, uint32_t sweep) {
-    return step->method != CK_METHOD_BULLET_PBD && ck_sweep_is_turned(sweep, step->used->iterations);
+    return step->method == CK_METHOD_STOERMER_BARS &&
+           ck_sweep_is_turned(CK_PROJECT_BARS, sweep, step->used->iterations);
 }
 
 // after  [3*n] out, m. The tensions of the sweeps are left in step->tension.
