@@ -126,10 +126,9 @@ static bool halves_meet(void *state, long step) {
 // under way in each half as the first cache holds the rows of, of both halves or of a thread's own.
 static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps, int halves) {
     const size_t bytes = row_bytes(cloth), together = (size_t)halves * LAG * bytes;
-    const int depth = ck_waves_depth(NULL, sweeps, cloth->rows.rows, LAG, bytes) > 1
-                          ? sweeps
-                          : (int)((FIRST_CACHE + together - 1) / together),
-              lag = at_least((places + depth - 1) / depth, LAG);
+    const bool is_beyond = ck_waves_depth(NULL, sweeps, cloth->rows.rows, LAG, bytes) > 1;
+    const int depth = (int)((FIRST_CACHE + together - 1) / together),
+              lag = is_beyond ? LAG : at_least((places + depth - 1) / depth, LAG);
     return at_least(lag, (2 * places + CK_MOST_VISITS - 1) / CK_MOST_VISITS);
 }
 
