@@ -344,7 +344,8 @@ static void add_bench_costs(ck_Answer *answer, const ck_CsvTable *table) {
         const char *metric = ck_csv_text_of(table, i, "metric");
         const double value = ck_csv_number_of(table, i, "value");
         if (strncmp(metric, COST, strlen(COST)) || isnan(value)) continue;
-        if (!is_begun) ck_answer_table(answer, "costs", "\nthe cheapest settings within an error of a fine reference", columns);
+        if (!is_begun)
+            ck_answer_table(answer, "costs", "\nthe cheapest settings within an error of a fine reference", columns);
         is_begun = true;
         ck_answer_number(answer, ck_csv_number_of(table, i, "particles"));
         ck_answer_text(answer, ck_csv_text_of(table, i, "engine"));

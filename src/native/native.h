@@ -43,6 +43,20 @@ typedef struct ck_Native {
 #define CK_NATIVE_TOLERANCE 1
 #define CK_NATIVE_SINGLE 2
 
+// Rows of their tables that are the same in all of them.
+#define CK_NATIVE_VECTORS_ROW                                                                                          \
+    {                                                                                                                  \
+        .name = "vectors", .slot = CK_OWN + CK_NATIVE_VECTORS, .is_whole = true, .least = 2, .most = 64, .unit = "1",  \
+        .rule = "the processor's widest", .help = "doubles of an instruction at most"                                  \
+    }
+#define CK_NATIVE_SINGLE_ROW                                                                                           \
+    {                                                                                                                  \
+        .name = "single", .slot = CK_OWN + CK_NATIVE_SINGLE, .is_whole = true, .least = 0, .most = 1, .unit = "1",     \
+        .rule = "0: double precision",                                                                                 \
+        .help = "1: single precision from an origin that moves with the cloth, on regular cloths that touch nothing",  \
+        .leaves_theory = true                                                                                          \
+    }
+
 // Terms that every native engine models.
 #define CK_NATIVE_TERMS                                                                                                \
     (CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |           \

@@ -115,7 +115,7 @@ static void test_sweeps(void **state) {
     const ck_Engine *bars = ck_engine_find("native-bars");
     const double links = 30,
                  pushes[] = {links * links - links, links * links + links - 2, links * links + links / 3 - 26.0 / 9};
-    for (uint32_t n = 1; n <= 3; n++) {
+    for (uint32_t n = 1; n <= 4; n++) {
         ck_Settings settings = {.substeps = 40, .iterations = n}, used;
         ck_Trajectory trajectory;
         ck_Reference prediction;
@@ -126,10 +126,12 @@ static void test_sweeps(void **state) {
         double dt = fixture.model.step / settings.substeps, size = fixture.model.size;
         double stretch = size * (ck_metric_value(sag, &fixture.model, &trajectory, &prediction) - 1);
         double foretold = size * (ck_metric_value(sag, &fixture.model, &prediction.trajectory, &prediction) - 1);
-        double law = 9.81 * dt * dt * pushes[n - 1] / (2 * n);
         // drag eases gravity's push by 1/(1 + drag·dt/2) = 0.5 %, and bars strained by up to 0.2 % before a sweep,
         // which takes L² for d·d_start, are corrected by that much more
-        assert_near("the stretch of swept bars, as a share of the law's", stretch / law, 1, 0.01);
+        if (n < 4)
+            assert_near("the stretch of swept bars, as a share of the law's",
+                        stretch / (9.81 * dt * dt * pushes[n - 1] / (2 * n)), 1, 0.01);
+        // of four sweeps the law has no short form
         assert_near("the predicted stretch, as a share", foretold / stretch, 1, 1e-4);
         ck_trajectory_free(&trajectory);
         ck_trajectory_free(&prediction.trajectory);
