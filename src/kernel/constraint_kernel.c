@@ -8,9 +8,7 @@ bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs) {
 
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
     const ck_ProjectionKind *kind = setup->loops->is_single ? &ck_projection_rows_single : &ck_projection_rows;
-    ck_Status status = kind->create(cloth, setup, error);
-    if (!status) *(const ck_ProjectionKind **)*cloth = kind;
-    return status;
+    return kind->create(cloth, setup, error);
 }
 
 // The first member of either's structure.

@@ -129,6 +129,7 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     const ck_Model *model = setup->model;
     ck_ProjectedCloth *cloth = calloc(1, sizeof *cloth);
     if (!cloth) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    cloth->kind = &ck_projection_rows;
     cloth->loops = setup->loops;
     cloth->rows = ck_rows_of(model);
     cloth->mass = (ck_Real)model->mass[0];

@@ -10,6 +10,9 @@
 #include "rows.h"
 #include "status.h"
 
+// Doubles of a point: three coordinates and a 0, so that it is a vector of its own.
+#define CK_POINT 4
+
 // Springs that are worked on together.
 #define CK_PACK 16
 // What stands at a place and for a spring, in bytes: numbers of theirs are as far apart, so that none is multiplied.

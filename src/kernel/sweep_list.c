@@ -87,7 +87,7 @@ static bool schedule(ck_SweepList *list, const ck_Model *model) {
 }
 
 static void put_ends(ck_SweepList *list, const ck_Model *model) {
-    const uint32_t bytes = CK_SEAT * sizeof(double), spare = (uint32_t)model->particle_count * bytes;
+    const uint32_t bytes = CK_POINT * sizeof(double), spare = (uint32_t)model->particle_count * bytes;
     for (int i = 0; i < list->packs * CK_PACK; i++) {
         const ck_Spring *spring = list->order[i] >= 0 ? &model->springs[list->order[i]] : NULL;
         list->ends[i / CK_PACK].a[i % CK_PACK] = spring ? (uint32_t)spring->a * bytes : spare;
@@ -131,7 +131,7 @@ static bool is_alike(const ck_Model *model, const ck_SweepRule *rule, ck_SweepVa
 }
 
 static bool allocate(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule) {
-    const size_t slots = (size_t)list->packs * CK_PACK, seats = CK_SEAT * ((size_t)model->particle_count + 1);
+    const size_t slots = (size_t)list->packs * CK_PACK, seats = CK_POINT * ((size_t)model->particle_count + 1);
     bool has_memory = true;
     for (int value = 0; value < CK_SWEPT_VALUES; value++) {
         const bool alike = is_alike(model, rule, value);
@@ -190,7 +190,6 @@ ck_Status ck_sweep_list_create(ck_SweepList **out, const ck_Loops *loops, const 
     }
     list->loops = loops;
     list->particles = model->particle_count;
-    list->springs = model->spring_count;
     put_ends(list, model);
     ck_sweep_list_set(list, model, rule);
     *out = list;
@@ -199,7 +198,7 @@ ck_Status ck_sweep_list_create(ck_SweepList **out, const ck_Loops *loops, const 
 
 static void seat(double *seats, const double *position, int particles) {
     for (int i = 0; i < particles; i++)
-        for (int axis = 0; axis < 3; axis++) seats[CK_SEAT * (long)i + axis] = position[3 * (long)i + axis];
+        for (int axis = 0; axis < 3; axis++) seats[CK_POINT * (long)i + axis] = position[3 * (long)i + axis];
 }
 
 void ck_sweep_list_begin(ck_SweepList *list, const double *position, const double *start) {
@@ -215,7 +214,7 @@ void ck_sweep_list_sweep(const ck_SweepList *list, bool is_turned) {
 
 void ck_sweep_list_read(const ck_SweepList *list, double *position) {
     for (int i = 0; i < list->particles; i++)
-        for (int axis = 0; axis < 3; axis++) position[3 * (long)i + axis] = list->x[CK_SEAT * (long)i + axis];
+        for (int axis = 0; axis < 3; axis++) position[3 * (long)i + axis] = list->x[CK_POINT * (long)i + axis];
 }
 
 void ck_sweep_list_take(ck_SweepList *list, const double *position) {

@@ -11,6 +11,8 @@
 // Substeps after which the error is looked at, which costs as much as half of one; and while they grow.
 #define TOGETHER 16
 #define TOGETHER_GROWING 2
+// The share of a frame that a step is at least: what flies apart would ask for ever shorter ones.
+#define LEAST 1e-6
 // The share of an even step that the first ones are: nothing is known then.
 #define FIRST 0.03
 // Frames after which stability is looked at: what a cloth's folding does to its highest frequency is slow.
@@ -31,6 +33,7 @@ struct ck_VerletPace {
     double wanted;     // s, as long as the error allows
     double limit;      // s, as long as is stable
     double slowest;    // s, what drag and pins that move allow
+    double least;      // s, whatever the error says
     double jerk;       // 1/s³: the acceleration's change, over the size
     bool grows;        // it is still longer each time
     int frames, moved; // since stability was looked at; free particles
@@ -53,6 +56,7 @@ ck_Status ck_verlet_pace_create(ck_VerletPace **out, const ck_Native *native, ck
     pace->wanted = FIRST * native->dt;
     pace->grows = true;
     pace->slowest = fmin(ck_stability_drag_time(model, 0.25), ck_path_longest_step(model));
+    pace->least = LEAST * model->step;
     pace->frames = LOOK_FRAMES;
     for (int i = 0; i < model->particle_count; i++) pace->moved += native->inverse_mass[i] > 0;
     pace->shortest = INFINITY;
@@ -79,7 +83,7 @@ ck_Status ck_verlet_pace_look(ck_VerletPace *pace, const ck_Native *native) {
 }
 
 uint32_t ck_verlet_pace_next(ck_VerletPace *pace, double left, double *dt) {
-    const double longest = fmin(pace->wanted, fmin(pace->limit, pace->slowest)),
+    const double longest = fmax(pace->least, fmin(pace->wanted, fmin(pace->limit, pace->slowest))),
                  count = fmax(2, ceil(left / longest * (1 - 1e-12)));
     *dt = left / count;
     const uint32_t most = pace->grows ? TOGETHER_GROWING : TOGETHER,

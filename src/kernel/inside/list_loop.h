@@ -5,9 +5,6 @@
 #include "explicit_kind.h"
 #include "spring_list.h"
 
-// Doubles of a point: three coordinates and a 0, so that it is a vector of its own.
-#define CK_POINT 4
-
 // Where a place is and its predicted velocity, as its springs ask for them: one line of a cache.
 typedef struct ck_Seat {
     double x[CK_POINT], predicted[CK_POINT];

@@ -5,9 +5,6 @@
 #include "spring_list.h"
 #include "sweep_list.h"
 
-// Doubles of a particle: three coordinates and a 0.
-#define CK_SEAT 4
-
 // Of each spring: 1/kg of its ends; m; of springs relaxation/((1 + γ̃)·W + α̃), kg, of bars relaxation/(2·L²·W); α̃;
 // γ̃; 1 where it hangs slack when it is short. 0 where there is none: that moves nothing.
 typedef enum ck_SweepValue {
@@ -23,12 +20,12 @@ typedef enum ck_SweepValue {
 
 struct ck_SweepList {
     const ck_Loops *loops;
-    int particles, springs, packs, terms;
+    int particles, packs, terms;
     int *order;                              // [packs*CK_PACK] springs, -1 where there is none
     ck_Pack *ends;                           // [packs] bytes into x and start
     ck_SpringValues values[CK_SWEPT_VALUES]; // one for all where all are alike, or none has any
     double *multiplier;                      // [packs*CK_PACK] kg·m
-    double *x, *start;                       // [(particles + 1)*CK_SEAT] m, the last spare
+    double *x, *start;                       // [(particles + 1)*CK_POINT] m, the last spare
     double *state;
 };
 
