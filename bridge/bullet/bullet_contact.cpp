@@ -2,6 +2,8 @@
 
 #include "collider.h"
 
+#include <stdexcept>
+
 double ck_bullet_margin(const ck_Model *model) {
     // a rigid body rolls and turns over at where its shape ends
     const double share = model->rigid_count ? 0.01 : 0.1;
@@ -119,6 +121,32 @@ void ck_BulletColliders::add(btDiscreteDynamicsWorld &world, const ck_BulletBody
 static double margin_of(const ck_BulletBody &body, const btRigidBody &object) {
     const bool is_second = object.getBroadphaseProxy()->m_collisionFilterGroup == ck_bullet_surface_group;
     return ck_bullet_margin(body.model) * (is_second ? -1 : 1);
+}
+
+const char *const ck_bullet_too_far = "a particle is too far from what it may touch: Bullet's field of distances, of "
+                                      "cells of a sixtieth of the smallest collider, ends there";
+
+// Cells that are counted without fear: an int has four times as many.
+const double most_cells = 1 << 29;
+
+void ck_bullet_check_reach(btCollisionWorld &world, btSoftBody &soft, double dt) {
+    const btCollisionObjectArray &objects = world.getCollisionObjectArray();
+    if (objects.size() < 2 || !soft.m_nodes.size()) return;
+    btVector3 low = soft.m_nodes[0].m_x, high = low;
+    for (int i = 0; i < soft.m_nodes.size(); i++) {
+        const btVector3 next = soft.m_nodes[i].m_x + soft.m_nodes[i].m_v * dt;
+        low.setMin(soft.m_nodes[i].m_x);
+        low.setMin(next);
+        high.setMax(soft.m_nodes[i].m_x);
+        high.setMax(next);
+    }
+    const double voxel = soft.getWorldInfo()->m_sparsesdf.voxelsz;
+    for (int i = 0; i < objects.size(); i++) {
+        if (objects[i] == &soft) continue;
+        const btVector3 place = objects[i]->getWorldTransform().getOrigin();
+        const double far = (low - place).absolute().length() + (high - place).absolute().length();
+        if (far > most_cells * voxel) throw std::range_error(ck_bullet_too_far);
+    }
 }
 
 void ck_BulletColliders::follow(btDiscreteDynamicsWorld &world, const ck_BulletBody &body) {

@@ -59,6 +59,13 @@ std::unique_ptr<btCollisionShape> ck_bullet_shape(const ck_Collider &collider, d
 // Where such a shape is: planes and cylinders beside the middle of the body.
 btTransform ck_bullet_place(const ck_Collider &collider, const btVector3 &middle, double margin, double half_side);
 
+// What ck_bullet_check_reach throws says, and a run that it ends.
+extern const char *const ck_bullet_too_far;
+
+// Throws std::range_error where a node may get, within a step of dt s, so far from a collider or rigid body of the
+// world that Bullet's field of distances, which counts its cells by int, would read beyond its memory. Cost: nodes.
+void ck_bullet_check_reach(btCollisionWorld &world, btSoftBody &soft, double dt);
+
 // ck_collider_gap of a point of Bullet's.
 double ck_bullet_gap(const ck_Collider &collider, const btVector3 &point, double normal[3]);
 

@@ -123,6 +123,7 @@ struct DeformableState {
     ck_Settings used;
     bool is_implicit;
     uint32_t frame = 0;
+    bool is_too_far = false;
     std::unique_ptr<Deformable> now; // NULL: there was no memory for it
     DeformableState(const ck_Model *model, const ck_Settings &settings, bool implicit)
         : scene(model), used(settings), is_implicit(implicit) {}
@@ -246,6 +247,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         if (status) throw std::bad_alloc();
         auto state = std::make_unique<DeformableState>(model, *used, is_implicit);
         state->now = build_world(state->scene.model(), *used, is_implicit);
+        ck_bullet_check_reach(*state->now->world, *state->now->body.soft, state->now->body.dt);
         *out = state.release();
         return CK_OK;
     });
@@ -274,11 +276,13 @@ ck_StepResult step(void *out) {
                 return body.soft->m_nodes[body.node_of_particle[particle]];
             });
             state.colliders.move(*state.world, body, start + i * body.dt);
+            ck_bullet_check_reach(*state.world, *body.soft, body.dt);
             state.world->step_once(body.dt);
         }
         return CK_OK;
     });
-    if (status) return CK_STEP_NO_MEMORY;
+    all.is_too_far = status == CK_REFUSED;
+    if (status) return ck_bullet_result(status);
     if (!state.colliders.rigid.is_finite()) return CK_STEP_DIVERGED;
     return ck_bullet_body_is_finite(state.body) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
@@ -317,6 +321,7 @@ void release(void *out, int particle) {
 
 const char *remark(const void *out) {
     const DeformableState &state = *static_cast<const DeformableState *>(out);
+    if (state.is_too_far) return ck_bullet_too_far;
     return state.now && state.now->world->was_clamped
                ? "Bullet clamped speeds to what crosses the body's bounding box in a step"
                : nullptr;

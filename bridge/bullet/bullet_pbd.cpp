@@ -94,6 +94,7 @@ struct ClassicState {
     ck_BulletModel scene;
     ck_Settings used;
     uint32_t frame = 0;
+    bool is_too_far = false;
     std::unique_ptr<Classic> now; // NULL: there was no memory for it
     ClassicState(const ck_Model *model, const ck_Settings &settings) : scene(model), used(settings) {}
 };
@@ -315,6 +316,8 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         translate(model, wanted, used, ledger);
         auto state = std::make_unique<ClassicState>(model, *used);
         state->now = build(state->scene.model(), *used);
+        const Classic &now = *state->now;
+        if (now.around) ck_bullet_check_reach(now.around->world, *now.body.soft, now.body.dt);
         *out = state.release();
         return CK_OK;
     });
@@ -352,6 +355,7 @@ void step_once(Classic &state, double end) {
     if (state.around) {
         state.around->colliders.move(state.around->world, state.body, end - state.body.dt);
         state.around->colliders.rigid.push();
+        ck_bullet_check_reach(state.around->world, soft, state.body.dt);
         state.around->world.step_once(state.body.dt);
         finish_landings(state);
         return;
@@ -370,7 +374,8 @@ ck_StepResult step(void *out) {
         for (uint32_t i = 0; i < state.body.substeps; i++) step_once(state, start + (i + 1) * state.body.dt);
         return CK_OK;
     });
-    if (status) return CK_STEP_NO_MEMORY;
+    all.is_too_far = status == CK_REFUSED;
+    if (status) return ck_bullet_result(status);
     if (state.around && !state.around->colliders.rigid.is_finite()) return CK_STEP_DIVERGED;
     return ck_bullet_body_is_finite(state.body) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }
@@ -406,6 +411,10 @@ void release(void *out, int particle) {
         return CK_OK;
     });
     if (status) state.now.reset();
+}
+
+const char *remark(const void *out) {
+    return static_cast<const ClassicState *>(out)->is_too_far ? ck_bullet_too_far : nullptr;
 }
 
 void destroy(void *state) {
@@ -502,7 +511,7 @@ extern "C" const ck_Engine ck_bullet_pbd = {
     .release = release,
     .contact = nullptr,
     .turn = read_turn,
-    .remark = nullptr,
+    .remark = remark,
     .destroy = destroy,
     .code = code,
 };

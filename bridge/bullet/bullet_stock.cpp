@@ -31,6 +31,7 @@ struct Stock {
     btScalar fixed_step; // s
     btScalar frame;      // s, of the next calls
     uint64_t done = 0;   // steps
+    bool is_too_far = false;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     ck_BulletRigid rigid;
@@ -197,6 +198,7 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
         add_colliders(*stock);
         stock->rigid.add(stock->world, &stock->model, 0, model->collider_count, 0, true);
         if (model->path_count) stock->world.setInternalTickCallback(drive, stock.get(), true);
+        ck_bullet_check_reach(stock->world, *stock->soft, stock->frame);
         *out = stock.release();
         return CK_OK;
     });
@@ -205,10 +207,12 @@ ck_Status create(void **out, const ck_Model *model, const ck_Settings *wanted, c
 ck_StepResult step(void *state) {
     Stock &stock = *static_cast<Stock *>(state);
     ck_Status status = ck_bullet_guarded(nullptr, [&] {
+        ck_bullet_check_reach(stock.world, *stock.soft, stock.frame);
         stock.world.stepSimulation(stock.frame, static_cast<int>(stock.used.substeps), stock.fixed_step);
         return CK_OK;
     });
-    if (status) return CK_STEP_NO_MEMORY;
+    stock.is_too_far = status == CK_REFUSED;
+    if (status) return ck_bullet_result(status);
     for (int i = 0; i < stock.soft->m_nodes.size(); i++)
         if (!std::isfinite(stock.soft->m_nodes[i].m_x.length2())) return CK_STEP_DIVERGED;
     return stock.rigid.is_finite() ? CK_STEP_OK : CK_STEP_DIVERGED;
@@ -243,6 +247,7 @@ void release(void *state, int particle) {
 
 const char *remark(const void *state) {
     const Stock &stock = *static_cast<const Stock *>(state);
+    if (stock.is_too_far) return ck_bullet_too_far;
     return stock.model.release_count
                ? "setMass, which lets a pin go, takes the lengths of that moment for lengths at rest"
                : nullptr;

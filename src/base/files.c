@@ -101,17 +101,36 @@ static bool is_part(const char *part, const char *name) {
     return digits && !strcmp(part + length + 1 + digits, ".part");
 }
 
-// Removes what processes that were killed have left of a file half written: nobody holds its lock any more.
-static void sweep(const char *directory, const char *name) {
+// Nobody holds the lock of what a killed process has left.
+void ck_path_sweep(const char *directory, const char *name) {
     DIR *folder = opendir(directory);
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
         if (!is_part(entry->d_name, name)) continue;
-        const int left = openat(dirfd(folder), entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-        if (left < 0) continue;
-        if (!flock(left, LOCK_EX | LOCK_NB)) unlinkat(dirfd(folder), entry->d_name, 0);
-        close(left);
+        char *path = ck_path_join(directory, entry->d_name);
+        const int left = path ? open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC) : -1;
+        if (left >= 0 && !flock(left, LOCK_EX | LOCK_NB)) ck_path_remove(path);
+        if (left >= 0) close(left);
+        free(path);
     }
     if (folder) closedir(folder);
+}
+
+ck_Status ck_part_folder_open(ck_PartFolder *folder, const char *directory, const char *name, ck_Error *error) {
+    *folder = (ck_PartFolder){.path = ck_path_part(directory, name), .lock = -1};
+    if (!folder->path) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
+    ck_path_sweep(directory, name);
+    const int failed = ck_path_make(folder->path);
+    if (failed) return ck_fail(error, CK_IO, "%s: %s", folder->path, strerror(failed));
+    folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder->lock >= 0) flock(folder->lock, LOCK_EX | LOCK_NB);
+    return CK_OK;
+}
+
+void ck_part_folder_close(ck_PartFolder *folder) {
+    if (folder->path) ck_path_remove(folder->path);
+    if (folder->path && folder->lock >= 0) close(folder->lock);
+    free(folder->path);
+    *folder = (ck_PartFolder){.lock = -1};
 }
 
 // A new file with its lock. Below 0: errno says why.
@@ -130,10 +149,21 @@ static int open_locked(const char *path) {
     return -1;
 }
 
-bool ck_file_lock(int file) {
+bool ck_file_write(int file, const void *bytes, size_t size) {
+    size_t done = 0;
+    for (ssize_t got; done < size; done += (size_t)got) {
+        got = write(file, (const char *)bytes + done, size - done);
+        if (!got) errno = ENOSPC;
+        if (got <= 0) return false;
+    }
+    return true;
+}
+
+bool ck_file_lock(int file, bool shares) {
     const struct timespec pause = {.tv_nsec = 20000000};
     for (int tries = 0; tries < 100; tries++) {
-        if (!flock(file, LOCK_EX | LOCK_NB)) return true;
+        if (!flock(file, (shares ? LOCK_SH : LOCK_EX) | LOCK_NB)) return true;
+        if (errno != EWOULDBLOCK && errno != EINTR) return true;
         nanosleep(&pause, NULL);
     }
     return false;
@@ -144,7 +174,7 @@ ck_Status ck_whole_file_open(ck_WholeFile *whole, const char *directory, const c
     if (!whole->path || !whole->part) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     int failed = ck_path_make(directory);
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
-    sweep(directory, name);
+    ck_path_sweep(directory, name);
     const int file = open_locked(whole->part);
     whole->file = file >= 0 ? fdopen(file, "wb") : NULL;
     if (!whole->file) ck_fail(error, CK_IO, "%s: %s", whole->part, strerror(errno));

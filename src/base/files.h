@@ -38,6 +38,22 @@ bool ck_path_data(char *out, size_t size);
 // libexec/clothcheck/adapters where it is installed. False where there is none.
 bool ck_path_adapters(char *out, size_t size);
 
+// A folder to work in, directory/name.NUMBER.part: it is locked, so that it is nobody's once this process is dead.
+typedef struct ck_PartFolder {
+    char *path; // NULL: none
+    int lock;
+} ck_PartFolder;
+
+// Removes what killed processes have left of directory/name, files and folders of its parts.
+void ck_path_sweep(const char *directory, const char *name);
+
+// Sweeps, and makes the folder and those above it. Errors: CK_IO, CK_NO_MEMORY. End with ck_part_folder_close in any
+// case.
+ck_Status ck_part_folder_open(ck_PartFolder *folder, const char *directory, const char *name, ck_Error *error);
+
+// Removes it, unless it has another name by now. Accepts a zeroed one.
+void ck_part_folder_close(ck_PartFolder *folder);
+
 // What tells two inputs apart.
 
 #define CK_HASH_START 0xcbf29ce484222325u
@@ -49,9 +65,14 @@ static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
     return start;
 }
 
-// Locks an open file for this process and its children. False where another process holds it for two seconds: the
-// workers of one that was killed do until they are dead, too.
-bool ck_file_lock(int file);
+// Writes all bytes at a file's place. False where it cannot, and errno says why: a disk that is full takes what still fits
+// and says so the next time.
+bool ck_file_write(int file, const void *bytes, size_t size);
+
+// Locks an open file or folder for this process and its children, or with shares for all that share it. False where
+// another process holds it for two seconds: the workers of one that was killed do until they are dead, too. Where a
+// file system has no locks, nothing is locked.
+bool ck_file_lock(int file, bool shares);
 
 // A file that appears whole or not at all: written beside its name under a lock, then renamed. What killed processes
 // have left of it is removed when it is begun again.

@@ -92,6 +92,7 @@ static _Noreturn void be_child(void (*work)(void *), void *context, int output, 
     // in a group of its own it would be stopped for reading from a terminal
     const int nothing = open("/dev/null", O_RDONLY);
     if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+    ck_progress_keep();
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
     signal(SIGINT, SIG_DFL);

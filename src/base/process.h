@@ -90,4 +90,7 @@ void ck_progress_show(const char *format, ...) __attribute__((format(printf, 1, 
 // Takes the line away.
 void ck_progress_clear(void);
 
+// Of a child, whose streams its parent takes: what it shows still reaches the terminal that the parent has.
+void ck_progress_keep(void);
+
 #endif

@@ -5,6 +5,7 @@
 #include "answer.h"
 #include "check.h"
 #include "comparison.h"
+#include "out_folder.h"
 
 #define CK_EXIT_OK 0
 #define CK_EXIT_FAILED 1 // a check failed
@@ -44,6 +45,7 @@ struct ck_Command {
     const char *help;     // what it does, in some lines
     unsigned groups;      // of options
     const char *out;      // where it writes to, where --out does not say; NULL: nowhere
+    bool shares_out;      // several processes may work there, where they are not asked of one scene alone
     double seconds;       // of wall time that a run may take, where --time-limit does not say
     double patience;      // s of CPU time that a run may cost, where --patience does not say; 0: any
     double full_patience; // the same with --full
@@ -64,6 +66,7 @@ typedef struct ck_Arguments {
     const ck_Engine *engines[CK_COMPARISON_MAX_ENGINES];
     ck_Override overrides[64];
     const char *out;          // directory; NULL: none
+    ck_OutFolder folder;      // it, claimed, of a command that writes there
     const char *points;       // of fit; NULL: none
     double uncertainty;       // of each of its coordinates, m
     const char *format;       // of export; NULL: json

@@ -430,6 +430,14 @@ static const Option *option_of(const ck_Command *command, int found) {
     return &table[found - FIRST_LONG];
 }
 
+// A session that is watched writes one file, and when it is told to.
+static ck_Status claim(ck_Arguments *arguments, ck_Error *error) {
+    const ck_Command *command = arguments->command;
+    if (!arguments->out || !(command->groups & CK_TAKES_OUT) || command->groups & CK_TAKES_VIEW) return CK_OK;
+    return ck_out_folder_claim(&arguments->folder, arguments->out, command->shares_out && arguments->scene_count != 1,
+                               error);
+}
+
 ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, int argc, char **argv,
                             ck_Error *error) {
     *arguments = (ck_Arguments){.options = ck_compare_options_default(),
@@ -476,13 +484,14 @@ ck_Status ck_arguments_read(ck_Arguments *arguments, const ck_Command *command, 
     }
     for (int i = optind; i < argc && !status; i++) status = add_word(arguments, command, argv[i], error);
     ck_answer_open(&arguments->answer, arguments->answer.form, command->name);
-    return status;
+    return status ? status : claim(arguments, error);
 }
 
 void ck_arguments_free(ck_Arguments *arguments) {
     for (int i = 0; i < arguments->scene_count; i++) free(arguments->scenes[i]);
     for (int i = 0; i < arguments->validate_count; i++) free(arguments->validate[i]);
     free(arguments->scenes);
+    ck_out_folder_leave(&arguments->folder);
     ck_answer_discard(&arguments->answer);
     *arguments = (ck_Arguments){0};
 }

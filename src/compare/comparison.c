@@ -109,6 +109,7 @@ static ck_Status measure_one(void *context, int index, ck_Error *error) {
     if (!status && options->consistency_budget > 0)
         status = ck_consistency_measure(comparison->consistency[i], run, options->consistency_budget, &options->limits,
                                         error);
+    ck_trajectory_rest(&run->trajectory);
     return status;
 }
 

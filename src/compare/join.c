@@ -4,6 +4,7 @@
 #include "files.h"
 #include "tables.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -16,11 +17,15 @@ typedef struct Part {
     int scene_count;
 } Part;
 
+static bool has_file(const char *directory, ck_LayoutName layout) {
+    char path[4096];
+    return snprintf(path, sizeof path, "%s/%s", directory, ck_layouts[layout].file) < (int)sizeof path &&
+           !access(path, F_OK);
+}
+
+// The machine's file gets its name last.
 bool ck_join_is_part(const char *directory) {
-    char *path = ck_path_join(directory, ck_layouts[CK_RUNS].file);
-    const bool is_there = path && !access(path, F_OK);
-    free(path);
-    return is_there;
+    return has_file(directory, CK_RUNS) && has_file(directory, CK_MACHINE);
 }
 
 static ck_Status read_part(Part *part, const char *directory, ck_Error *error) {

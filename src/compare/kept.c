@@ -47,7 +47,8 @@ static ck_Status check_lost(const ck_Kept *kept, const ck_Layout *layout, bool k
                     kept->directory, layout->file);
     for (int i = 0; i < table.row_count && !status; i++) {
         const char *scene = ck_csv_table_text(&table, i, 0), *engine = ck_csv_text_of(&table, i, "engine");
-        if (has_scene(kept, scene) && has_engine(kept, engine)) continue;
+        // a truth is found again with its scene
+        if (has_scene(kept, scene) && (has_engine(kept, engine) || !strcmp(engine, "truth"))) continue;
         bool can_stay = !is_again(kept, &table, i);
         if (can_stay && keeps_others) continue;
         status = ck_fail(error, CK_BAD_INPUT,

@@ -3,6 +3,7 @@
 #include "files.h"
 #include "metric.h"
 #include "names.h"
+#include "text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -146,6 +147,7 @@ static void add_deviations(ck_Csv *csv, const ck_Comparison *comparison) {
                 double deviation =
                     ck_metric_deviation(metric, model, &comparison->runs[one].trajectory,
                                         &comparison->runs[other].trajectory, &comparison->truth.reference);
+                ck_trajectory_rest(&comparison->runs[other].trajectory);
                 if (isnan(deviation)) continue;
                 ck_csv_text(csv, model->name);
                 ck_csv_text(csv, metric->name);
@@ -219,6 +221,7 @@ static void add_comparison(ck_Tables *tables, const ck_Comparison *comparison, c
                        &comparison->runs[i].trajectory);
         add_metrics(&tables->csv[CK_METRICS], comparison, i);
         add_distances(&tables->csv[CK_METRICS], comparison, i);
+        ck_trajectory_rest(&comparison->runs[i].trajectory);
     }
     if (series == CK_SERIES_ROWS_ALL) add_truth_series(&tables->csv[CK_SERIES], comparison);
     add_deviations(&tables->csv[CK_DEVIATIONS], comparison);
@@ -231,18 +234,18 @@ void ck_tables_add(ck_Tables *tables, const ck_Comparison *comparison, const ck_
 ck_Status ck_tables_text(char **rows, const ck_Comparison *comparison, const ck_CompareOptions *options,
                          ck_SeriesRows series, ck_Error *error) {
     ck_Tables tables = {0};
-    size_t sizes[CK_COMPARISON_LAYOUTS];
+    ck_Text texts[CK_COMPARISON_LAYOUTS] = {0};
     bool has_failed = false;
     for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
         rows[i] = NULL;
         if (i == CK_MACHINE || (i == CK_SERIES && series == CK_SERIES_ROWS_NONE)) continue;
-        ck_csv_begin(&tables.csv[i], open_memstream(&rows[i], &sizes[i]), &ck_layouts[i]);
-        has_failed |= !tables.csv[i].whole.file;
+        has_failed |= !ck_text_begin(&texts[i]);
+        ck_csv_begin(&tables.csv[i], texts[i].file, &ck_layouts[i]);
     }
     if (!has_failed) add_comparison(&tables, comparison, options, series);
     for (int i = 0; i < CK_COMPARISON_LAYOUTS; i++) {
-        FILE *file = tables.csv[i].whole.file;
-        if (file) has_failed |= fclose(file) != 0;
+        if (texts[i].file) has_failed |= !ck_text_end(&texts[i]);
+        rows[i] = texts[i].bytes;
     }
     return has_failed ? ck_fail(error, CK_NO_MEMORY, "out of memory") : CK_OK;
 }

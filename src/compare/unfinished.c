@@ -69,13 +69,13 @@ ck_Status ck_unfinished_open(ck_Unfinished *unfinished, const char *out, const c
                          unfinished->directory);
         unlink(path);
     }
-    if (!status && !ck_file_lock(unfinished->question))
+    if (!status && !ck_file_lock(unfinished->question, false))
         status = ck_fail(error, CK_BAD_INPUT, "%s: another comparison is running there; give another --out", out);
     if (!status && !is_asked(unfinished->question, question)) {
         *dropped = count_scenes(unfinished->directory);
         empty(unfinished->directory);
-        const ssize_t length = (ssize_t)strlen(question);
-        if (ftruncate(unfinished->question, 0) || pwrite(unfinished->question, question, (size_t)length, 0) != length)
+        if (ftruncate(unfinished->question, 0) || lseek(unfinished->question, 0, SEEK_SET) ||
+            !ck_file_write(unfinished->question, question, strlen(question)))
             status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
     }
     if (!status) unfinished->kept = count_scenes(unfinished->directory);

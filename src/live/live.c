@@ -5,6 +5,7 @@
 #include "files.h"
 #include "scene.h"
 #include "session.h"
+#include "text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -349,10 +350,9 @@ static ck_Status put(ck_Document *document, const char *key, const char *value, 
 }
 
 static char *changes_text(const ck_Live *live) {
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    ck_Text text;
+    if (!ck_text_begin(&text)) return NULL;
+    FILE *out = text.file;
     fprintf(out, "[");
     for (int i = 0; i < live->deed_count; i++) {
         const Deed *deed = &live->deeds[i];
@@ -364,7 +364,7 @@ static char *changes_text(const ck_Live *live) {
         fprintf(out, "\"}");
     }
     fprintf(out, "]");
-    return fclose(out) ? NULL : text;
+    return ck_text_end(&text) ? text.bytes : NULL;
 }
 
 ck_Status ck_live_save(const ck_Live *live, const char *folder, const char *name, ck_Error *error) {

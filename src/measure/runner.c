@@ -165,7 +165,9 @@ static void conclude(ck_Run *run, const Report *report, const ck_ChildResult *ch
         snprintf(run->reason, sizeof run->reason, "the engine ran out of memory after t = %g s", time);
     } else if (report->step == CK_STEP_DIVERGED) {
         run->status = CK_RUN_DIVERGED;
-        snprintf(run->reason, sizeof run->reason, "left the finite numbers after t = %g s", time);
+        snprintf(run->reason, sizeof run->reason, "%s after t = %g s%s%s",
+                 *report->remark ? "stopped" : "left the finite numbers", time, *report->remark ? "; " : "",
+                 report->remark);
     } else {
         snprintf(run->reason, sizeof run->reason, "ran to t = %g s", time);
     }

@@ -24,9 +24,13 @@ typedef struct ck_Trajectory {
     int rigid_count;
 } ck_Trajectory;
 
-// Room for a model's start and all its frames, in memory that a child process can fill.
+// Room for a model's start and all its frames, in memory that a child process can fill; beyond 64 MiB it is a file in
+// TMPDIR or /var/tmp that has no name.
 // Errors: CK_NO_MEMORY. Free with ck_trajectory_free in any case.
 ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model, ck_Error *error);
+
+// Gives back the memory in which this process sees a large path, until it is read again: its values stay.
+void ck_trajectory_rest(const ck_Trajectory *trajectory);
 
 // Accepts a zeroed trajectory.
 void ck_trajectory_free(ck_Trajectory *trajectory);

@@ -1,5 +1,6 @@
 #include "claims.h"
 
+#include "csv_child.h"
 #include "engines.h"
 #include "files.h"
 #include "model.h"
@@ -234,16 +235,33 @@ static ck_Status sweep(ck_Csv *csv, const Claim *claim, const ck_Scene *scene, c
     return status;
 }
 
+typedef struct Case {
+    const Claim *claim;
+    const char *scenes;
+    void (*progress)(const char *claim, double value);
+} Case;
+
+static ck_Status write_claim(ck_Csv *csv, void *context, ck_Error *error) {
+    const Case *one = context;
+    ck_Scene scene = {0};
+    ck_Model model = {0};
+    ck_Status status = ck_claims_load(&scene, &model, one->scenes, one->claim->scene, error);
+    if (!status) status = sweep(csv, one->claim, &scene, &model, one->progress, error);
+    ck_model_free(&model);
+    ck_scene_free(&scene);
+    return status;
+}
+
 ck_Status ck_claims_write(ck_Csv *csv, const char *scenes, void (*progress)(const char *claim, double value),
                           ck_Error *error) {
+    const ck_Limits limits = ck_limits_default();
     ck_Status status = CK_OK;
     for (size_t i = 0; i < sizeof claims / sizeof *claims && !status; i++) {
-        ck_Scene scene = {0};
-        ck_Model model = {0};
-        status = ck_claims_load(&scene, &model, scenes, claims[i].scene, error);
-        if (!status) status = sweep(csv, &claims[i], &scene, &model, progress, error);
-        ck_model_free(&model);
-        ck_scene_free(&scene);
+        if (progress) progress(claims[i].text, claims[i].values[0]);
+        status = ck_csv_from_child(csv, write_claim, &(Case){&claims[i], scenes, progress}, &limits, error);
+        const ck_Error why = *error;
+        if (status == CK_REFUSED)
+            status = ck_fail(error, status, "%s on %s: %s", claims[i].engine, claims[i].scene, why.message);
     }
     return status;
 }

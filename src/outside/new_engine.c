@@ -26,7 +26,7 @@ static ck_Status write_file(const char *directory, const char *file, const char 
 }
 
 ck_Status ck_outside_new_engine(const char *name, ck_Error *error) {
-    char file[80], path[100];
+    char file[80], path[200];
     // it becomes a target of CMake and the name of an engine
     if (!*name || strlen(name) > 40 ||
         strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") != strlen(name))
@@ -40,10 +40,13 @@ ck_Status ck_outside_new_engine(const char *name, ck_Error *error) {
                  {"CMakeLists.txt", ck_template_cmake},
                  {"check", ck_template_check},
                  {"README.md", ck_template_readme}};
-    ck_Status status = CK_OK;
+    ck_PartFolder folder;
+    ck_Status status = ck_part_folder_open(&folder, ".", name, error);
     for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++)
-        status = write_file(name, files[i].file, files[i].text, name, error);
-    snprintf(path, sizeof path, "%s/check", name);
+        status = write_file(folder.path, files[i].file, files[i].text, name, error);
+    snprintf(path, sizeof path, "%s/check", folder.path ? folder.path : name);
     if (!status && chmod(path, 0755)) status = ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
+    if (!status && rename(folder.path, name)) status = ck_fail(error, CK_IO, "%s: %s", name, strerror(errno));
+    ck_part_folder_close(&folder);
     return status;
 }

@@ -10,7 +10,6 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 // Charts are files that a report has written, or the user's own things lie among them and would be lost.
 static ck_Status check_charts(const char *charts, ck_Error *error) {
@@ -31,19 +30,27 @@ static ck_Status check_charts(const char *charts, ck_Error *error) {
     return status;
 }
 
-// Where everything is before it has its name, and what was there before.
+// Where charts and page are before they have their names, and what was there before.
 typedef struct Places {
+    ck_PartFolder work;
     char *charts, *new_charts, *old_charts, *page, *new_page;
 } Places;
 
-static bool find_places(Places *places, const char *directory) {
-    *places = (Places){ck_path_join(directory, CK_CHART_DIRECTORY), ck_path_part(directory, CK_CHART_DIRECTORY),
-                       ck_path_part(directory, "old_charts"), ck_path_join(directory, "index.html"),
-                       ck_path_part(directory, "index.html")};
-    return places->charts && places->new_charts && places->old_charts && places->page && places->new_page;
+static ck_Status open_places(Places *places, const char *directory, ck_Error *error) {
+    *places =
+        (Places){.charts = ck_path_join(directory, CK_CHART_DIRECTORY), .page = ck_path_join(directory, "index.html")};
+    ck_Status status = ck_part_folder_open(&places->work, directory, "report", error);
+    if (status) return status;
+    places->new_charts = ck_path_join(places->work.path, CK_CHART_DIRECTORY);
+    places->old_charts = ck_path_join(places->work.path, "old");
+    places->new_page = ck_path_join(places->work.path, "index.html");
+    const bool is_found =
+        places->charts && places->new_charts && places->old_charts && places->page && places->new_page;
+    return is_found ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
 }
 
-static void free_places(Places *places) {
+static void close_places(Places *places) {
+    ck_part_folder_close(&places->work);
     free(places->charts);
     free(places->new_charts);
     free(places->old_charts);
@@ -55,15 +62,12 @@ static void free_places(Places *places) {
 static ck_Status replace(const Places *places, ck_Error *error) {
     bool had_charts = !rename(places->charts, places->old_charts);
     bool failed = rename(places->new_charts, places->charts) || rename(places->new_page, places->page);
-    if (!failed) {
-        if (had_charts) ck_path_remove(places->old_charts);
-        return CK_OK;
-    }
+    if (!failed) return CK_OK;
     ck_Status status = ck_fail(error, CK_IO, "%s: %s", places->page, strerror(errno));
     ck_path_remove(places->charts);
     if (had_charts && rename(places->old_charts, places->charts))
         status =
-            ck_fail(error, CK_IO, "%s: the charts that were there are now in %s", places->charts, places->old_charts);
+            ck_fail(error, CK_IO, "%s: the charts that were there are lost; report draws them again", places->charts);
     return status;
 }
 
@@ -72,21 +76,18 @@ ck_Status ck_report_write(const char *directory, double paper_width, ck_Error *e
     ck_Status found = ck_template_sources(sources, sizeof sources, error);
     if (found) return found;
     ck_ReportData data;
-    Places places;
-    bool is_found = find_places(&places, directory), *drawn = NULL;
+    Places places = {0};
+    bool *drawn = NULL;
     ck_Status status = ck_report_data_read(&data, directory, error);
     if (!status) drawn = calloc((size_t)(data.scene_count + 1) * (size_t)ck_chart_count(), sizeof *drawn);
-    if (!status && !(is_found && drawn)) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status && !drawn) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = open_places(&places, directory, error);
     if (!status) status = check_charts(places.charts, error);
-    if (!status) {
-        status = ck_charts_draw(&data, places.new_charts, sources, paper_width, drawn, error);
-        if (!status) status = ck_page_write(&data, sources, places.new_charts, drawn, places.new_page, error);
-        if (!status) status = replace(&places, error);
-        if (status) ck_path_remove(places.new_charts);
-        if (status) unlink(places.new_page);
-    }
+    if (!status) status = ck_charts_draw(&data, places.new_charts, sources, paper_width, drawn, error);
+    if (!status) status = ck_page_write(&data, sources, places.new_charts, drawn, places.new_page, error);
+    if (!status) status = replace(&places, error);
+    close_places(&places);
     free(drawn);
-    free_places(&places);
     ck_report_data_free(&data);
     return status;
 }

@@ -2,6 +2,7 @@
 
 #include "files.h"
 #include "names.h"
+#include "text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,22 +45,17 @@ static bool has_key(const char *words, const ck_Change *of) {
 }
 
 bool ck_change_merge(char **words, const char *more) {
-    char *text = NULL;
-    size_t size;
+    ck_Text text;
     ck_Change change;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return false;
+    if (!ck_text_begin(&text)) return false;
     for (int place = 0; ck_change_next(*words, &place, &change);)
         if (!has_key(more, &change))
-            fprintf(out, "@%.*s=%.*s", change.key_length, change.key, change.value_length, change.value);
+            fprintf(text.file, "@%.*s=%.*s", change.key_length, change.key, change.value_length, change.value);
     for (int place = 0; ck_change_next(more, &place, &change);)
-        fprintf(out, "@%.*s=%.*s", change.key_length, change.key, change.value_length, change.value);
-    if (fclose(out)) {
-        free(text);
-        return false;
-    }
+        fprintf(text.file, "@%.*s=%.*s", change.key_length, change.key, change.value_length, change.value);
+    if (!ck_text_end(&text)) return false;
     free(*words);
-    *words = text;
+    *words = text.bytes;
     return true;
 }
 

@@ -37,11 +37,24 @@ static ck_Status read_text(ck_Document *document, ck_Error *error) {
 // The deepest nesting that a scene has use for is 5.
 #define MAX_DEPTH 16
 
-// What would make a small file slow or ambiguous: deep nesting, aliases, and more than one document.
-static const char *objection(const yaml_event_t *event, int depth, int documents) {
-    if (depth > MAX_DEPTH) return "is nested too deep; a few levels are all it needs";
-    if (event->type == YAML_ALIAS_EVENT) return "an alias is not supported; write the value out";
-    if (documents > 1) return "begins a second document; a file has one";
+typedef struct Seen {
+    int depth, documents, values;
+} Seen;
+
+// What would make a file slow, large in memory or ambiguous: deep nesting, aliases, more than one document, more values
+// than a scene has use for.
+static const char *object(Seen *seen, yaml_event_type_t type) {
+    const bool begins = type == YAML_MAPPING_START_EVENT || type == YAML_SEQUENCE_START_EVENT;
+    seen->depth += begins;
+    seen->depth -= type == YAML_MAPPING_END_EVENT || type == YAML_SEQUENCE_END_EVENT;
+    seen->documents += type == YAML_DOCUMENT_START_EVENT;
+    seen->values += begins || type == YAML_SCALAR_EVENT;
+    if (seen->depth > MAX_DEPTH) return "is nested too deep; a few levels are all it needs";
+    if (type == YAML_ALIAS_EVENT) return "an alias is not supported; write the value out";
+    if (seen->documents > 1) return "begins a second document; a file has one";
+    if (seen->values > CK_DOCUMENT_MAX_VALUES)
+        return "has more values than the 500000 that are read; a large body comes from a mesh file, a long path from a "
+               "CSV";
     return NULL;
 }
 
@@ -51,14 +64,11 @@ static ck_Status scan(const ck_Document *document, ck_Error *error) {
     if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
     yaml_parser_set_input_string(&parser, document->text, document->length);
     ck_Status status = CK_OK;
-    int depth = 0, documents = 0;
+    Seen seen = {0};
     for (bool done = false; !done && !status;) {
         yaml_event_t event;
         if (!yaml_parser_parse(&parser, &event)) break; // the tree's parser will say why
-        depth += event.type == YAML_MAPPING_START_EVENT || event.type == YAML_SEQUENCE_START_EVENT;
-        depth -= event.type == YAML_MAPPING_END_EVENT || event.type == YAML_SEQUENCE_END_EVENT;
-        documents += event.type == YAML_DOCUMENT_START_EVENT;
-        const char *wrong = objection(&event, depth, documents);
+        const char *wrong = object(&seen, event.type);
         if (wrong)
             status = ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: %s", document->path, event.start_mark.line + 1,
                              event.start_mark.column + 1, wrong);
@@ -76,12 +86,12 @@ static ck_Status parse(ck_Document *document, ck_Error *error) {
     if (!yaml_parser_initialize(&parser)) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
     yaml_parser_set_input_string(&parser, document->text, document->length);
     document->has_yaml = yaml_parser_load(&parser, &document->yaml);
-    if (!document->has_yaml && parser.error == YAML_MEMORY_ERROR)
+    // without memory it says so, or nothing
+    if (!document->has_yaml && (parser.error == YAML_MEMORY_ERROR || !parser.problem))
         status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", document->path);
     else if (!document->has_yaml)
-        status =
-            ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", document->path, parser.problem_mark.line + 1,
-                    parser.problem_mark.column + 1, parser.problem ? parser.problem : "unreadable");
+        status = ck_fail(error, CK_BAD_INPUT, "%s:%zu:%zu: is not YAML: %s", document->path,
+                         parser.problem_mark.line + 1, parser.problem_mark.column + 1, parser.problem);
     else if (!yaml_document_get_root_node(&document->yaml))
         status = ck_fail(error, CK_BAD_INPUT, "%s:1:1: is empty; a %s needs %s", document->path, document->kind->name,
                          document->kind->needs);

@@ -7,8 +7,10 @@
 #include <stddef.h>
 #include <yaml.h>
 
-// The largest scene file that is read. A 100×100 network with every bar listed is below 1 MB.
+// The largest scene file that is read, and the most values in it, each of which takes up to 350 bytes as a tree:
+// together 200 MB. A 100×100 network with every bar listed is below 1 MB and has 150,000 values.
 #define CK_DOCUMENT_MAX_BYTES (16u << 20)
+#define CK_DOCUMENT_MAX_VALUES 500000
 
 // What a file is of, in the words of an error.
 typedef struct ck_DocumentKind {
@@ -27,8 +29,8 @@ typedef struct ck_Document {
 } ck_Document;
 
 // Reads and parses a file, with the changes that its path has: see change.h. Refuses what is not a regular file, is
-// empty, or is larger than CK_DOCUMENT_MAX_BYTES. Errors: CK_BAD_INPUT with file:line:column, CK_NO_MEMORY, CK_IO. Free
-// with ck_document_free in any case.
+// empty, or is larger than CK_DOCUMENT_MAX_BYTES or CK_DOCUMENT_MAX_VALUES. Errors: CK_BAD_INPUT with file:line:column,
+// CK_NO_MEMORY, CK_IO. Free with ck_document_free in any case.
 ck_Status ck_document_load(ck_Document *document, const char *path, const ck_DocumentKind *kind, ck_Error *error);
 // Parses the text again, once it has been changed. Errors: as those of ck_document_load.
 ck_Status ck_document_parse(ck_Document *document, ck_Error *error);

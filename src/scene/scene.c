@@ -84,7 +84,9 @@ ck_Status ck_scene_load(ck_Scene *scene, const char *path, ck_Error *error) {
     if (status) return status;
     cyaml_err_t result = cyaml_load_data(scene->document.text, scene->document.length, &cyaml, &ck_scene_schema,
                                          (cyaml_data_t **)&scene->file, NULL);
-    if (result == CYAML_ERR_OOM) return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
+    // libyaml has read this text before: what it cannot do now is for a lack of memory
+    if (result == CYAML_ERR_OOM || result == CYAML_ERR_LIBYAML_PARSER || result == CYAML_ERR_LIBYAML_PARSER_INIT)
+        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", path);
     if (result) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, cyaml_strerror(result));
     ck_SceneTime *time = &scene->file->time;
     if (time->fps > 0) time->step = 1 / time->fps;

@@ -1,7 +1,9 @@
 #include "bench.h"
 
 #include "bench_body.h"
-#include "bench_front.h"
+#include "bench_cost.h"
+#include "bench_row.h"
+#include "csv_child.h"
 #include "engines.h"
 #include "loops.h"
 #include "process.h"
@@ -14,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_ROUNDS 99
 #define MAX_SIZES 16 // of a growing cloth, whose side doubles
 // How long a repeat lasts at least, s: far above the clock's grain.
 #define REPEAT 0.02
@@ -83,8 +84,8 @@ typedef struct Entrant {
     const ck_Engine *engine;
     const Candidate *candidate;
     void *state;
-    int frames;               // of a repeat
-    double times[MAX_ROUNDS]; // s a step, by round
+    int frames;                        // of a repeat
+    double times[CK_BENCH_MAX_ROUNDS]; // s a step, by round
     int count;
     char reason[200]; // why there is no time; empty: there is
 } Entrant;
@@ -131,28 +132,6 @@ static void enter(Entrant *entrant, const Candidate *candidate, const ck_Model *
         snprintf(entrant->reason, sizeof entrant->reason, "one frame takes longer than the budget");
 }
 
-// quartiles: the median, the lower and the upper one; NULL: none, for the reason.
-static void add_row(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const char *engine, const char *setup,
-                    const char *metric, const char *unit, const double *quartiles, double scale, const char *reason) {
-    ck_csv_text(csv, body->name);
-    ck_csv_count(csv, (uint64_t)model->particle_count);
-    ck_csv_count(csv, (uint64_t)model->spring_count);
-    ck_csv_text(csv, engine);
-    ck_csv_text(csv, setup);
-    ck_csv_text(csv, metric);
-    ck_csv_text(csv, unit);
-    for (int i = 0; i < 3; i++) ck_csv_number(csv, quartiles ? scale * quartiles[i] : NAN);
-    ck_csv_text(csv, reason ? reason : "");
-}
-
-static void find_quartiles(const double *values, int count, double *quartiles) {
-    double sorted[MAX_ROUNDS];
-    memcpy(sorted, values, sizeof *sorted * (size_t)count);
-    quartiles[0] = ck_median(sorted, count);
-    quartiles[1] = ck_quantile(sorted, count, 0.25);
-    quartiles[2] = ck_quantile(sorted, count, 0.75);
-}
-
 static double updates_of(const Entrant *entrant, const ck_Model *model) {
     uint32_t iterations = entrant->candidate->settings.iterations;
     return (double)model->spring_count * (iterations ? iterations : 1);
@@ -161,16 +140,16 @@ static double updates_of(const Entrant *entrant, const ck_Model *model) {
 // This engine's time over that of the native one, an update of each, round by round; of threads the gain.
 static void add_ratio(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const Entrant *entrant,
                       const Entrant *native) {
-    double ratios[MAX_ROUNDS], quartiles[3];
+    double ratios[CK_BENCH_MAX_ROUNDS], quartiles[3];
     bool is_shared = entrant->candidate->settings.threads > 1;
     if (entrant == native || *native->reason || !native->count) return;
     for (int i = 0; i < entrant->count; i++) {
         ratios[i] = entrant->times[i] / native->times[i] * updates_of(native, model) / updates_of(entrant, model);
         if (is_shared) ratios[i] = 1 / ratios[i];
     }
-    find_quartiles(ratios, entrant->count, quartiles);
-    add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup,
-            is_shared ? "speedup_of_threads" : "update_over_native", "1", quartiles, 1, NULL);
+    ck_bench_quartiles(ratios, entrant->count, quartiles);
+    ck_bench_add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup,
+                     is_shared ? "speedup_of_threads" : "update_over_native", "1", quartiles, 1, NULL);
 }
 
 // The share of the processor's peak that the row kernels reach: on cloths, with one thread.
@@ -180,20 +159,22 @@ static void add_share(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *mod
     if (body->kind != CK_BENCH_CLOTH || each->spring == 0 || !ck_loops_at(0)->fuses) return;
     double work = each->spring * updates_of(entrant, model) + each->particle * (double)model->particle_count;
     const double shares[3] = {work / peak / quartiles[0], work / peak / quartiles[2], work / peak / quartiles[1]};
-    add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup, "share_of_peak", "1", shares, 1, NULL);
+    ck_bench_add_row(csv, body, model, entrant->engine->name, entrant->candidate->setup, "share_of_peak", "1", shares,
+                     1, NULL);
 }
 
 static void add_entrant(ck_Csv *csv, const ck_BenchBody *body, const ck_Model *model, const Entrant *entrant,
                         const Entrant *native, double peak) {
     const char *name = entrant->engine->name, *setup = entrant->candidate->setup;
     if (*entrant->reason || !entrant->count) {
-        add_row(csv, body, model, name, setup, "step_time", "s", NULL, 1, entrant->reason);
+        ck_bench_add_row(csv, body, model, name, setup, "step_time", "s", NULL, 1, entrant->reason);
         return;
     }
     double quartiles[3];
-    find_quartiles(entrant->times, entrant->count, quartiles);
-    add_row(csv, body, model, name, setup, "step_time", "s", quartiles, 1, NULL);
-    add_row(csv, body, model, name, setup, "update_time", "ns", quartiles, 1e9 / updates_of(entrant, model), NULL);
+    ck_bench_quartiles(entrant->times, entrant->count, quartiles);
+    ck_bench_add_row(csv, body, model, name, setup, "step_time", "s", quartiles, 1, NULL);
+    ck_bench_add_row(csv, body, model, name, setup, "update_time", "ns", quartiles, 1e9 / updates_of(entrant, model),
+                     NULL);
     add_ratio(csv, body, model, entrant, native);
     add_share(csv, body, model, entrant, peak, quartiles);
 }
@@ -239,15 +220,15 @@ static ck_Status add_seconds(ck_Csv *csv, const ck_BenchBody *body, const ck_Ben
         if (options->progress) options->progress(body->name, automatic.engine);
         create(&entrant, &model, automatic.settings);
         double spent = 0;
-        while (!*entrant.reason && spent < 10 * REPEAT && entrant.count < MAX_ROUNDS) {
+        while (!*entrant.reason && spent < 10 * REPEAT && entrant.count < CK_BENCH_MAX_ROUNDS) {
             double once = CK_BENCH_SUBSTEPS * time_frames(&entrant, 1);
             spent += once;
             entrant.times[entrant.count++] = once / model.step;
         }
         double quartiles[3];
-        if (entrant.count) find_quartiles(entrant.times, entrant.count, quartiles);
-        add_row(csv, body, &model, automatic.engine, automatic.setup, "second_time", "s/s",
-                *entrant.reason ? NULL : quartiles, 1, entrant.reason);
+        if (entrant.count) ck_bench_quartiles(entrant.times, entrant.count, quartiles);
+        ck_bench_add_row(csv, body, &model, automatic.engine, automatic.setup, "second_time", "s/s",
+                         *entrant.reason ? NULL : quartiles, 1, entrant.reason);
         if (entrant.state) entrant.engine->destroy(entrant.state);
     }
     ck_model_free(&model);
@@ -313,7 +294,7 @@ static bool has_residual(const Candidate *candidate) {
 static ck_Status add_residuals(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptions *options, ck_Error *error) {
     ck_Model model = {0};
     uint32_t sweeps[CANDIDATES] = {0};
-    double times[CANDIDATES][MAX_ROUNDS], quartiles[3];
+    double times[CANDIDATES][CK_BENCH_MAX_ROUNDS], quartiles[3];
     ck_Status status = build_stretched(&model, body, error);
     for (size_t i = 0; i < CANDIDATES && !status; i++) {
         if (!has_residual(&candidates[i])) continue;
@@ -327,11 +308,11 @@ static ck_Status add_residuals(ck_Csv *csv, const ck_BenchBody *body, const ck_B
         if (!has_residual(&candidates[i])) continue;
         const double count = sweeps[i], each[3] = {count, count, count};
         const char *reason = count > 0 ? NULL : "does not model rigid bars, or does not get there in 4096 sweeps";
-        find_quartiles(times[i], sweeps[i] ? options->rounds : 0, quartiles);
-        add_row(csv, body, &model, candidates[i].engine, candidates[i].setup, "sweeps_to_strain", "1",
-                reason ? NULL : each, 1, reason);
-        add_row(csv, body, &model, candidates[i].engine, candidates[i].setup, "time_to_strain", "s",
-                reason ? NULL : quartiles, 1, reason);
+        ck_bench_quartiles(times[i], sweeps[i] ? options->rounds : 0, quartiles);
+        ck_bench_add_row(csv, body, &model, candidates[i].engine, candidates[i].setup, "sweeps_to_strain", "1",
+                         reason ? NULL : each, 1, reason);
+        ck_bench_add_row(csv, body, &model, candidates[i].engine, candidates[i].setup, "time_to_strain", "s",
+                         reason ? NULL : quartiles, 1, reason);
     }
     ck_model_free(&model);
     return status;
@@ -367,11 +348,11 @@ static ck_Status grow_to(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOp
         double bytes = (bytes_in_use() - before) / model.particle_count, quartiles[3] = {NAN, NAN, NAN};
         for (int round = 0; round < options->rounds && !*entrant.reason; round++)
             entrant.times[entrant.count++] = time_frames(&entrant, entrant.frames);
-        if (entrant.count) find_quartiles(entrant.times, entrant.count, quartiles);
+        if (entrant.count) ck_bench_quartiles(entrant.times, entrant.count, quartiles);
         *seconds = quartiles[0];
         const double each[3] = {bytes, bytes, bytes};
-        add_row(csv, body, &model, "native-verlet", "", "growth_step_time", "s", quartiles, 1, entrant.reason);
-        add_row(csv, body, &model, "native-verlet", "", "memory_per_particle", "B", each, 1, NULL);
+        ck_bench_add_row(csv, body, &model, "native-verlet", "", "growth_step_time", "s", quartiles, 1, entrant.reason);
+        ck_bench_add_row(csv, body, &model, "native-verlet", "", "memory_per_particle", "B", each, 1, NULL);
         if (entrant.state) entrant.engine->destroy(entrant.state);
     }
     ck_model_free(&model);
@@ -393,86 +374,74 @@ static ck_Status grow(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *err
     }
     const double p = ck_slope(x, y, count), each[3] = {p, p, p};
     ck_Model none = {0};
-    add_row(csv, &(ck_BenchBody){.name = "cloth"}, &none, "native-verlet", "", "growth_exponent", "1", each, 1, NULL);
+    ck_bench_add_row(csv, &(ck_BenchBody){.name = "cloth"}, &none, "native-verlet", "", "growth_exponent", "1", each, 1,
+                     NULL);
     return status;
 }
 
-// Cloths that are let go, of one stiffness each: what it costs to be right.
-typedef struct Front {
-    ck_BenchBody body;
-    double stiffness; // N/m
-} Front;
+// What is timed in one child.
+typedef struct Section Section;
+struct Section {
+    ck_Status (*write)(ck_Csv *csv, const Section *section, ck_Error *error);
+    const ck_BenchBody *body;
+    const ck_BenchCloth *cloth;
+    const ck_BenchOptions *options;
+    double peak;
+};
 
-static const Front fronts[] = {{{"cloth", CK_BENCH_CLOTH, 20, 20}, 1e3},
-                               {{"cloth", CK_BENCH_CLOTH, 64, 64}, 1e3},
-                               {{"cloth", CK_BENCH_CLOTH, 64, 64}, 1e6}};
-#define FRONTS (sizeof fronts / sizeof *fronts)
-// CPU s of a run at most.
-#define FRONT_BUDGET 3
-
-static void add_cost(ck_Csv *csv, const Front *front, const ck_BenchFront *built, const ck_Engine *engine, int target,
-                     const ck_BenchCost *cost, const char *reason, int rounds) {
-    char setup[100], metric[40], why[200];
-    double times[MAX_ROUNDS], quartiles[3];
-    const bool is_found = !isnan(cost->seconds);
-    times[0] = cost->seconds;
-    for (int i = 1; i < rounds && is_found; i++)
-        ck_bench_front_run(built, engine, &cost->settings, INFINITY, &times[i], why);
-    if (is_found) find_quartiles(times, rounds, quartiles);
-    int used = snprintf(setup, sizeof setup, "%g N/m", front->stiffness);
-    if (is_found && used > 0)
-        used += snprintf(setup + used, sizeof setup - (size_t)used, ", %u substeps", cost->settings.substeps);
-    if (is_found && cost->settings.iterations)
-        snprintf(setup + used, sizeof setup - (size_t)used, ", %u iterations", cost->settings.iterations);
-    snprintf(metric, sizeof metric, "cost_to_%g_percent", 100 * ck_bench_targets[target]);
-    add_row(csv, &front->body, &built->model, engine->name, setup, metric, "s/s", is_found ? quartiles : NULL, 1,
-            is_found  ? NULL
-            : *reason ? reason
-                      : "no settings within the budget get there");
+static ck_Status write_race(ck_Csv *csv, const Section *section, ck_Error *error) {
+    return race(csv, section->body, section->options, section->peak, error);
 }
 
-// Each engine's cheapest settings within an error, by the same search; the reference and how well it is known first.
-static ck_Status add_front(ck_Csv *csv, const Front *front, const ck_BenchOptions *options, ck_Error *error) {
-    ck_BenchFront built;
-    if (options->progress) options->progress(front->body.name, "reference");
-    ck_Status status = ck_bench_front_build(&built, &front->body, front->stiffness, error);
-    const double each[3] = {built.uncertainty, built.uncertainty, built.uncertainty};
-    char setup[40];
-    snprintf(setup, sizeof setup, "%g N/m", front->stiffness);
-    if (!status)
-        add_row(csv, &front->body, &built.model, "native-verlet", setup, "reference_uncertainty", "1", each, 1, NULL);
-    for (int i = 0; i < ck_engine_count() && !status; i++) {
-        const ck_Engine *engine = ck_engine_at(i);
-        ck_BenchCost costs[CK_BENCH_TARGETS];
-        char reason[200];
-        if (engine->method == CK_METHOD_STILL) continue;
-        if (options->progress) options->progress(front->body.name, engine->name);
-        ck_bench_front_search(&built, engine, FRONT_BUDGET, costs, reason);
-        for (int target = 0; target < CK_BENCH_TARGETS; target++)
-            add_cost(csv, front, &built, engine, target, &costs[target], reason,
-                     options->rounds < 3 ? options->rounds : 3);
-    }
-    ck_bench_front_free(&built);
-    return status;
+static ck_Status write_seconds(ck_Csv *csv, const Section *section, ck_Error *error) {
+    return add_seconds(csv, section->body, section->options, error);
 }
 
-static bool is_taken(const ck_BenchBody *body, const ck_BenchOptions *options) {
-    return body->kind == CK_BENCH_ROPE || (int)body->rows <= options->largest;
+static ck_Status write_residuals(ck_Csv *csv, const Section *section, ck_Error *error) {
+    return add_residuals(csv, section->body, section->options, error);
+}
+
+static ck_Status write_costs(ck_Csv *csv, const Section *section, ck_Error *error) {
+    return ck_bench_add_costs(csv, section->cloth, section->options, error);
+}
+
+static ck_Status write_growth(ck_Csv *csv, const Section *section, ck_Error *error) {
+    return grow(csv, section->options, error);
+}
+
+static ck_Status write_section(ck_Csv *csv, void *context, ck_Error *error) {
+    const Section *section = context;
+    return section->write(csv, section, error);
+}
+
+// An engine that crashes or hangs costs the rows of its section, which say so, and no others.
+static ck_Status add_section(ck_Csv *csv, Section section, ck_Error *error) {
+    const ck_Limits limits = ck_limits_default();
+    const ck_BenchBody *body = section.body;
+    const bool is_taken = body->kind == CK_BENCH_ROPE || (int)body->rows <= section.options->largest;
+    if (!is_taken) return CK_OK;
+    if (section.options->progress) section.options->progress(body->name, "its engines");
+    ck_Status status = ck_csv_from_child(csv, write_section, &section, &limits, error);
+    if (status != CK_REFUSED) return status;
+    ck_Model none = {0};
+    ck_bench_add_row(csv, body, &none, "", "", "step_time", "s", NULL, 1, error->message);
+    return CK_OK;
 }
 
 ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
-    double peak = find_peak();
-    const double each[3] = {peak, peak, peak};
+    const double peak = find_peak(), each[3] = {peak, peak, peak};
+    const ck_BenchBody growing = {"growing cloth", CK_BENCH_CLOTH, 1, 1};
     ck_Model none = {0};
-    add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
+    ck_bench_add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
     ck_Status status = CK_OK;
     for (size_t i = 0; i < BODIES && !status; i++)
-        if (is_taken(&bodies[i], options)) status = race(csv, &bodies[i], options, peak, error);
+        status = add_section(csv, (Section){write_race, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < BODIES && !status; i++)
-        if (is_taken(&bodies[i], options)) status = add_seconds(csv, &bodies[i], options, error);
+        status = add_section(csv, (Section){write_seconds, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < 2 && !status; i++)
-        if (is_taken(&bodies[i], options)) status = add_residuals(csv, &bodies[i], options, error);
-    for (size_t i = 0; i < FRONTS && !status; i++)
-        if (is_taken(&fronts[i].body, options)) status = add_front(csv, &fronts[i], options, error);
-    return status ? status : grow(csv, options, error);
+        status = add_section(csv, (Section){write_residuals, &bodies[i], NULL, options, peak}, error);
+    for (size_t i = 0; i < CK_BENCH_CLOTHS && !status; i++)
+        status = add_section(csv, (Section){write_costs, &ck_bench_cloths[i].body, &ck_bench_cloths[i], options, peak},
+                             error);
+    return status ? status : add_section(csv, (Section){write_growth, &growing, NULL, options, peak}, error);
 }

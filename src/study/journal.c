@@ -119,11 +119,8 @@ static ck_Status parse(Reader *reader, const char *text, size_t length, ck_Error
 
 // One write, so that rows of several processes do not mix.
 static ck_Status append(const ck_Journal *journal, const char *text, size_t length, ck_Error *error) {
-    ssize_t written = write(journal->file, text, length);
-    if (written == (ssize_t)length) return CK_OK;
-    // a disk that is full takes what still fits and says so the next time; the half row is dropped by who reads it
-    if (written >= 0) written = write(journal->file, text + written, length - (size_t)written);
-    if (written >= 0) errno = ENOSPC;
+    // a half row, where the disk is full, is dropped by who reads it
+    if (ck_file_write(journal->file, text, length)) return CK_OK;
     return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
 }
 
@@ -152,13 +149,16 @@ ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char
     if (!journal->path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     journal->file = open(journal->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (journal->file < 0) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
-    if (!ck_file_lock(journal->file))
+    if (!ck_file_lock(journal->file, false))
         return ck_fail(error, CK_BAD_INPUT, "%s: another study is running there; give another --out", journal->path);
     size_t length;
     char *text = read_lines(journal->file, &length);
     if (!text) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    // one that was cut off in its first two rows is none
+    const char *first = memchr(text, '\n', length);
+    const bool is_asked = first && memchr(first + 1, '\n', length - (size_t)(first + 1 - text));
     free(text);
-    if (!length) return ask(journal, question, error);
+    if (!is_asked) return ask(journal, question, error);
     if (ftruncate(journal->file, (off_t)length)) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
     return ck_journal_read(journal, question, kept, context, error);
 }

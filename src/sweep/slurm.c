@@ -2,6 +2,7 @@
 
 #include "files.h"
 #include "names.h"
+#include "text.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -26,12 +27,12 @@ static void write_end(FILE *out, const ck_SlurmOptions *options, const char *fol
 }
 
 char *ck_slurm_script(const ck_SlurmOptions *options, int is_end) {
-    char program[PATH_MAX] = "clothcheck", here[PATH_MAX], quoted[2 * PATH_MAX], *text = NULL;
-    size_t size;
+    char program[PATH_MAX] = "clothcheck", here[PATH_MAX], quoted[2 * PATH_MAX];
+    ck_Text text;
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length > 0) program[length] = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    if (!ck_text_begin(&text)) return NULL;
+    FILE *out = text.file;
     fprintf(out, "#!/bin/sh\n");
     // sbatch reads quotes as a shell does
     ck_text_shell(quoted, sizeof quoted, options->folder);
@@ -47,7 +48,7 @@ char *ck_slurm_script(const ck_SlurmOptions *options, int is_end) {
     }
     ck_text_shell(quoted, sizeof quoted, program);
     fprintf(out, "exec %s %s\n", quoted, is_end ? options->end : options->part);
-    return fclose(out) ? NULL : text;
+    return ck_text_end(&text) ? text.bytes : NULL;
 }
 
 static ck_Status write_script(const ck_SlurmOptions *options, int is_end, char **path, ck_Error *error) {

@@ -186,13 +186,10 @@ ck_Status ck_store_add(const ck_StoreWriter *writer, uint64_t key, double cost, 
     const int head = asprintf(&record, "case %016" PRIx64 " %zu %.6g %016" PRIx64 "\n%s\n", key, bytes, cost,
                               ck_hash(CK_HASH_START, text, bytes), text);
     if (head < 0) return fail_memory(error);
-    const size_t length = (size_t)head;
-    size_t done = 0;
-    for (ssize_t got; done < length && (got = write(writer->file, record + done, length - done)) > 0;)
-        done += (size_t)got;
+    const bool is_written = ck_file_write(writer->file, record, (size_t)head);
+    const int why = errno;
     free(record);
-    if (done == length) return CK_OK;
-    const int why = errno ? errno : ENOSPC;
+    if (is_written) return CK_OK;
     // half a record would hide those after it
     if (before >= 0 && ftruncate(writer->file, before))
         return ck_fail(error, CK_IO, "%s: %s", writer->path, strerror(errno));

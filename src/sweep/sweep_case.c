@@ -7,6 +7,7 @@
 #include "process.h"
 #include "provenance.h"
 #include "tables.h"
+#include "text.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -54,12 +55,12 @@ static const char *engine_name(const Case *one) {
     return one->sweep->is_by_engine ? one->sweep->options->compare->engines[one->engine]->name : "all";
 }
 
-static void add_own_row(const Case *one) {
-    char *row = NULL;
-    size_t size;
+// False when out of memory.
+static bool add_own_row(const Case *one) {
+    ck_Text row;
     ck_Csv csv;
-    ck_csv_begin(&csv, open_memstream(&row, &size), &ck_layouts[CK_STUDY]);
-    if (!csv.whole.file) return;
+    if (!ck_text_begin(&row)) return false;
+    ck_csv_begin(&csv, row.file, &ck_layouts[CK_STUDY]);
     ck_csv_text(&csv, one->scene);
     ck_csv_text(&csv, engine_name(one));
     ck_csv_text(&csv, one->status);
@@ -70,9 +71,10 @@ static void add_own_row(const Case *one) {
     ck_csv_text(&csv, ck_machine_build());
     ck_csv_count(&csv, one->sweep->options->compare->seed);
     ck_csv_text(&csv, one->command);
-    fclose(csv.whole.file);
-    add_section(one->out, ck_layouts[CK_STUDY].file, row, size);
-    free(row);
+    if (!ck_text_end(&row)) return false;
+    add_section(one->out, ck_layouts[CK_STUDY].file, row.bytes, row.size);
+    free(row.bytes);
+    return true;
 }
 
 // Says that a case could not be run, which is a result. What a command of ours said is told without its own name.
@@ -316,12 +318,16 @@ ck_Status ck_sweep_case(const ck_Sweep *sweep, int index, char **text, size_t *s
     snprintf(one->reason, sizeof one->reason, "finished");
     ck_sweep_word(sweep, one->point, one->word);
     snprintf(one->scene, sizeof one->scene, "%.250s", *one->word ? one->word : "none");
-    one->out = open_memstream(text, size);
-    ck_Status status = one->out ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Text own;
+    const bool is_begun = ck_text_begin(&own);
+    one->out = own.file;
+    ck_Status status = is_begun ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status)
         status = sweep->options->file->run == CK_STUDY_COMPARE ? run_compare(one, error) : run_command(one, error);
-    if (!status) add_own_row(one);
-    if (one->out && fclose(one->out) && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    bool has_row = status || add_own_row(one);
+    if (!(ck_text_end(&own) && has_row) && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *text = own.bytes;
+    *size = own.size;
     free(one);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "process.h"
 #include "store.h"
 #include "tables.h"
+#include "text.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -19,7 +20,12 @@ typedef struct Results {
     ck_WholeFile files[CK_REPORT_LAYOUTS];
     char *columns;        // what follows every row of the case at hand: its host first
     const char *but_host; // the same of study.csv, which has the host already
+    ck_Error why;         // a section could not be written
 } Results;
+
+static ck_Status fail_memory(ck_Error *error) {
+    return ck_fail(error, CK_NO_MEMORY, "out of memory");
+}
 
 // A field as it stands in a CSV.
 static void add_field(FILE *out, const char *text) {
@@ -37,15 +43,15 @@ static void add_field(FILE *out, const char *text) {
 static bool set_columns(Results *results, int point, const char *host) {
     const ck_Sweep *sweep = results->sweep;
     const ck_StudyFile *file = sweep->options->file;
-    size_t size;
+    ck_Text text;
     free(results->columns);
     results->columns = NULL;
-    FILE *out = open_memstream(&results->columns, &size);
-    if (!out) return false;
-    add_field(out, host);
-    add_field(out, file->scene_count ? sweep->names[ck_sweep_scene(sweep, point)] : "");
-    for (int k = 0; k < ck_sweep_key_count(file); k++) add_field(out, ck_sweep_value(sweep, point, k));
-    if (fclose(out)) return false;
+    if (!ck_text_begin(&text)) return false;
+    add_field(text.file, host);
+    add_field(text.file, file->scene_count ? sweep->names[ck_sweep_scene(sweep, point)] : "");
+    for (int k = 0; k < ck_sweep_key_count(file); k++) add_field(text.file, ck_sweep_value(sweep, point, k));
+    if (!ck_text_end(&text)) return false;
+    results->columns = text.bytes;
     // a host's name has nothing that is quoted
     results->but_host = results->columns + 1 + strlen(host);
     return true;
@@ -119,12 +125,12 @@ static ck_Status take_host(void *context, int layout, const char *rows, size_t s
 }
 
 // A case's series as OUT/series/SCENE.ENGINE.csv.gz, by the names in its first row.
-static ck_Status pack_series(const Results *results, const char *rows, size_t size) {
+static ck_Status pack_series(const Results *results, const char *rows, size_t size, ck_Error *error) {
     char name[400], *folder = ck_path_join(results->sweep->options->directory, "series");
     ck_WholeFile whole = {0};
     const int scene = (int)strcspn(rows, ","), engine = (int)strcspn(rows + scene + 1, ",");
     snprintf(name, sizeof name, "%.*s.%.*s.csv.gz", scene, rows, engine, rows + scene + 1);
-    ck_Status status = folder ? ck_whole_file_open(&whole, folder, name, NULL) : CK_NO_MEMORY;
+    ck_Status status = folder ? ck_whole_file_open(&whole, folder, name, error) : fail_memory(error);
     const int file = status ? -1 : dup(fileno(whole.file));
     gzFile packed = file >= 0 ? gzdopen(file, "wb6") : NULL;
     const ck_Layout *layout = &ck_layouts[CK_SERIES];
@@ -135,8 +141,8 @@ static ck_Status pack_series(const Results *results, const char *rows, size_t si
         has_failed |= gzputs(packed, "\n") < 0 || gzwrite(packed, rows, (unsigned)size) != (int)size;
         has_failed |= gzclose(packed) != Z_OK;
     }
-    if (!status && has_failed) status = CK_IO;
-    if (!status) status = ck_whole_file_close(&whole, NULL);
+    if (!status && has_failed) status = ck_fail(error, CK_IO, "%s: cannot be packed: %s", name, strerror(errno));
+    if (!status) status = ck_whole_file_close(&whole, error);
     ck_whole_file_discard(&whole);
     free(folder);
     return status;
@@ -145,9 +151,9 @@ static ck_Status pack_series(const Results *results, const char *rows, size_t si
 static ck_Status take_rows(void *context, int layout, const char *rows, size_t size) {
     Results *results = context;
     if (layout == CK_SERIES && results->sweep->options->file->series == CK_SERIES_GZIP)
-        return pack_series(results, rows, size);
+        return pack_series(results, rows, size, &results->why);
     if (!results->files[layout].file) {
-        ck_Status status = begin_file(results, layout, NULL);
+        ck_Status status = begin_file(results, layout, &results->why);
         if (status) return status;
     }
     copy_rows(results->files[layout].file, rows, size, layout == CK_STUDY ? results->but_host : results->columns);
@@ -157,9 +163,11 @@ static ck_Status take_rows(void *context, int layout, const char *rows, size_t s
 static ck_Status add_case(Results *results, const char *text, int index, ck_Error *error) {
     char host[65] = "";
     int engine, point = ck_sweep_point(results->sweep, index, &engine);
-    if (!visit_sections(text, host, take_host) || !set_columns(results, point, host) ||
-        !visit_sections(text, results, take_rows))
-        return ck_fail(error, CK_IO, "%s: case %d cannot be written", results->sweep->options->directory, index);
+    if (!visit_sections(text, host, take_host))
+        return ck_fail(error, CK_IO, "%s: case %d is not whole", results->sweep->options->directory, index);
+    if (!set_columns(results, point, host)) return fail_memory(error);
+    if (!visit_sections(text, results, take_rows))
+        return ck_fail(error, CK_IO, "case %d cannot be written: %s", index, results->why.message);
     return CK_OK;
 }
 
@@ -189,11 +197,14 @@ static ck_Status write_machines(const char *directory, const char *folder, ck_Er
     struct dirent **hosts = NULL;
     const int count = machines ? scandir(machines, &hosts, is_shown, alphasort) : -1;
     ck_Csv csv = {0};
-    ck_Status status = ck_csv_open(&csv, directory, &ck_layouts[CK_MACHINE], error);
+    ck_Status status = !machines || (count < 0 && errno == ENOMEM)
+                           ? fail_memory(error)
+                           : ck_csv_open(&csv, directory, &ck_layouts[CK_MACHINE], error);
     for (int i = 0; i < count; i++) {
         char *path = ck_path_join(machines, hosts[i]->d_name), key[520];
         ck_CsvTable table = {0};
-        if (!status && path) status = ck_csv_table_read(&table, path, &ck_layouts[CK_MACHINE], error);
+        if (!status && !path) status = fail_memory(error);
+        if (!status) status = ck_csv_table_read(&table, path, &ck_layouts[CK_MACHINE], error);
         for (int row = 0; row < table.row_count && !status; row++) {
             snprintf(key, sizeof key, "%s%s%s", count > 1 ? hosts[i]->d_name : "", count > 1 ? ": " : "",
                      ck_csv_table_text(&table, row, 0));

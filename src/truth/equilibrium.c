@@ -27,6 +27,7 @@ typedef struct Newton {
     cholmod_factor *factor;
     cholmod_dense *gradient;
     double *position, *trial; // [3*n]
+    bool is_starved;          // CHOLMOD found no memory
 } Newton;
 
 // Energy, and its gradient over all coordinates, pinned ones too, where gradient is not NULL.
@@ -171,14 +172,16 @@ static void assemble(Newton *newton, double shift) {
     for (int i = 0; i < newton->unknowns; i++) add_block(newton, i, i, identity, shift);
 }
 
-// Factorises the Hessian plus shift·I. False where that is not positive definite.
+// Factorises the Hessian plus shift·I. False where that is not positive definite, or there is no memory.
 static bool factorise(Newton *newton, double shift) {
     assemble(newton, shift);
     cholmod_sparse *hessian = cholmod_triplet_to_sparse(newton->triplet, 0, &newton->common);
-    if (!hessian) return false;
-    if (!newton->factor) newton->factor = cholmod_analyze(hessian, &newton->common);
-    cholmod_factorize(hessian, newton->factor, &newton->common);
-    bool definite = newton->common.status == CHOLMOD_OK && newton->factor->minor == newton->factor->n;
+    if (hessian && !newton->factor) newton->factor = cholmod_analyze(hessian, &newton->common);
+    newton->is_starved |= !newton->factor;
+    if (newton->factor) cholmod_factorize(hessian, newton->factor, &newton->common);
+    newton->is_starved |= !hessian || newton->common.status == CHOLMOD_OUT_OF_MEMORY;
+    bool definite =
+        !newton->is_starved && newton->common.status == CHOLMOD_OK && newton->factor->minor == newton->factor->n;
     cholmod_free_sparse(&hessian, &newton->common);
     return definite;
 }
@@ -254,7 +257,7 @@ static int iterate(Newton *newton, double *energy, double *residual, double *gra
     *residual = norm_of_free(newton->model, gradient) / newton->load;
     for (; iteration < MAX_ITERATIONS && !ck_child_interrupted; iteration++) {
         bool definite = factorise(newton, shift);
-        while (!definite && shift < 1e6 * newton->scale) {
+        while (!definite && !newton->is_starved && shift < 1e6 * newton->scale) {
             shift = fmax(4 * shift, 1e-6 * newton->scale);
             definite = factorise(newton, shift);
         }
@@ -262,6 +265,7 @@ static int iterate(Newton *newton, double *energy, double *residual, double *gra
         pack(newton, gradient);
         cholmod_dense *step =
             definite ? cholmod_solve(CHOLMOD_A, newton->factor, newton->gradient, &newton->common) : NULL;
+        newton->is_starved |= definite && !step;
         double before = *residual;
         bool moved = step && search_line(newton, step->x, energy, residual, gradient);
         cholmod_free_dense(&step, &newton->common);
@@ -340,6 +344,10 @@ ck_Status ck_equilibrium_solve(ck_Equilibrium *equilibrium, const ck_Model *mode
     }
     minimise(&newton, equilibrium, gradient);
     equilibrium->is_minimum = factorise(&newton, 0);
+    if (newton.is_starved) {
+        status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+        goto cleanup;
+    }
     equilibrium->position = newton.position;
     newton.position = NULL;
     for (int i = 0; i < 3 * model->particle_count; i++) equilibrium->position[i] += model->position[i % 3];
@@ -364,7 +372,7 @@ ck_Status ck_stiffness_create(ck_Stiffness **out, const ck_Model *model, const d
     ck_Stiffness *stiffness = *out = calloc(1, sizeof *stiffness);
     if (!stiffness) return CK_NO_MEMORY;
     ck_Status status = start_newton(&stiffness->newton, model, NULL, position);
-    if (!status && !factorise(&stiffness->newton, 0)) status = CK_REFUSED;
+    if (!status && !factorise(&stiffness->newton, 0)) status = stiffness->newton.is_starved ? CK_NO_MEMORY : CK_REFUSED;
     if (!status) return CK_OK;
     ck_stiffness_destroy(stiffness);
     *out = NULL;

@@ -1,6 +1,7 @@
 #include "orders.h"
 
 #include "names.h"
+#include "text.h"
 #include "vector.h"
 
 #include <jansson.h>
@@ -65,10 +66,9 @@ static ck_Status set_value(ck_Stage *stage, json_t *order, ck_Error *error) {
 //   goal  [3] m, at the frame's end; NULL: nothing moves
 static char *pin_words(const ck_Stage *stage, const double *goal) {
     const ck_Model *model = ck_live_model(stage->live);
-    char *text = NULL;
-    size_t size;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return NULL;
+    ck_Text text;
+    if (!ck_text_begin(&text)) return NULL;
+    FILE *out = text.file;
     fprintf(out, "@pins=[");
     bool is_first = true;
     for (int i = 0; i < ck_model_cloth_count(model); i++) {
@@ -82,7 +82,7 @@ static char *pin_words(const ck_Stage *stage, const double *goal) {
         fprintf(out, "{pins: ['%d'], path: {towards: [%.17g, %.17g, %.17g], from: %.17g, to: %.17g}}", stage->held,
                 goal[0], goal[1], goal[2], now, now + model->step);
     fprintf(out, "]");
-    return fclose(out) ? NULL : text;
+    return ck_text_end(&text) ? text.bytes : NULL;
 }
 
 static ck_Status change_pins(ck_Stage *stage, const double *goal, ck_Error *error) {

@@ -2,6 +2,7 @@
 
 #include "orders.h"
 #include "template.h"
+#include "text.h"
 #include "token.h"
 
 #include "springs.h"
@@ -409,10 +410,12 @@ static char *make_intro(const ck_Live *live) {
 static ck_Status make_page(View *view, ck_Error *error) {
     char sources[PATH_MAX];
     ck_Status status = ck_template_sources(sources, sizeof sources, error);
-    FILE *file = status ? NULL : open_memstream(&view->page, &view->page_size);
-    if (!status && !file) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
-    if (!status) status = ck_template_write(file, sources, "view.html", view->nonce, NULL, NULL, error);
-    if (file && fclose(file) && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_Text page = {0};
+    if (!status && !ck_text_begin(&page)) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!status) status = ck_template_write(page.file, sources, "view.html", view->nonce, NULL, NULL, error);
+    if (!ck_text_end(&page) && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    view->page = page.bytes;
+    view->page_size = page.size;
     return status;
 }
 

@@ -218,7 +218,8 @@ static ck_Status check(Work *work, int *deviations, ck_Error *error) {
         ck_answer_line(&arguments->answer, CK_ANSWER_NEXT, "clothcheck report %s", arguments->history);
     if (!status && arguments->is_update) return update(work, error);
     if (!status) status = ck_check_write_junit(arguments->out, &work->check, work->rows, &work->baseline, error);
-    if (!status) *deviations = show_worst(work, MOST_PRINTED);
+    if (!status && (*deviations = show_worst(work, MOST_PRINTED)) < 0)
+        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) note_absent(work);
     if (!status)
         ck_answer_line(&arguments->answer, CK_ANSWER_SAYS, "%d runs, %d deviations", work->check.case_count,

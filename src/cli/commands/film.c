@@ -4,7 +4,6 @@
 #include "files.h"
 #include "tables.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +11,7 @@
 
 // Where the replay goes, and what became of it: the command has one at a time.
 static struct {
-    char *directory;
+    ck_PartFolder folder;
     double seconds;
     char scene[200];
     ck_Status status;
@@ -25,7 +24,7 @@ static void keep_replay(ck_Arguments *arguments, const ck_Comparison *comparison
     ck_answer_summary(arguments, comparison);
     made.seconds = model->duration;
     snprintf(made.scene, sizeof made.scene, "%s", model->name);
-    made.status = ck_replay_write(comparison, made.directory, false, model->frame_count + 1, &made.error);
+    made.status = ck_replay_write(comparison, made.folder.path, false, model->frame_count + 1, &made.error);
 }
 
 static void show_progress(int drawn, int count) {
@@ -42,27 +41,28 @@ static ck_Status choose_engines(ck_Arguments *arguments, ck_Error *error) {
     return status;
 }
 
-// A directory to be made where the film will be. NULL when out of memory.
-static char *work_beside(const char *out) {
+// Work is done where the film will be.
+static ck_Status work_beside(const char *out, ck_Error *error) {
     const char *slash = strrchr(out, '/');
     char *folder = slash ? strndup(out, (size_t)(slash - out) + 1) : strdup(".");
-    char *work = folder ? ck_path_part(folder, "film") : NULL;
+    ck_Status status = folder ? ck_part_folder_open(&made.folder, folder, "film", error)
+                              : ck_fail(error, CK_NO_MEMORY, "out of memory");
     free(folder);
-    return work;
+    return status;
 }
 
 static ck_Status film_scene(ck_Arguments *arguments, const char *out, ck_Error *error) {
     ck_Status status = ck_command_compare_scenes(arguments, keep_replay, error);
     if (status) return status;
     if (made.status) return ck_fail(error, made.status, "%s", made.error.message);
-    const ck_Film film = {.replays = made.directory,
+    const ck_Film film = {.replays = made.folder.path,
                           .scene = made.scene,
                           .seconds = made.seconds,
                           .color = arguments->color ? arguments->color : "strain",
                           .width = arguments->film_width,
                           .height = arguments->film_height,
                           .fps = arguments->film_fps};
-    status = ck_film_write(&film, made.directory, out, show_progress, error);
+    status = ck_film_write(&film, made.folder.path, out, show_progress, error);
     ck_progress_clear();
     return status;
 }
@@ -86,12 +86,9 @@ static int run(const ck_Command *command, int argc, char **argv) {
     if (!status) status = choose_engines(&arguments, &error);
     arguments.options.consistency_budget = 0;
     arguments.options.repeats = 0;
-    if (!status && !(made.directory = work_beside(out))) status = ck_fail(&error, CK_NO_MEMORY, "out of memory");
-    const int failed = status ? 0 : ck_path_make(made.directory);
-    if (failed) status = ck_fail(&error, CK_IO, "%s: %s", made.directory, strerror(failed));
+    if (!status) status = work_beside(out, &error);
     if (!status) status = film_scene(&arguments, out, &error);
-    if (made.directory) ck_path_remove(made.directory);
-    free(made.directory);
+    ck_part_folder_close(&made.folder);
     if (!status) ck_answer_line(&arguments.answer, CK_ANSWER_NOTE, "=> %s", out);
     if (!status) ck_answer_line(&arguments.answer, CK_ANSWER_NEXT, "clothcheck view %s", arguments.scenes[0]);
     return ck_command_end(&arguments, status, &error);

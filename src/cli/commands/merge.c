@@ -131,6 +131,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     char **parts = arguments.words + 1;
     int count = arguments.word_count - 1;
     if (!status) status = check_parts(&arguments, &error);
+    if (!status) status = ck_out_folder_claim(&arguments.folder, arguments.words[0], false, &error);
     if (!status) {
         if (has_cases(parts[0])) return join(&arguments, true);
         study = find_study(parts[0], question, sizeof question);

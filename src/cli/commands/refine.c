@@ -120,5 +120,6 @@ const ck_Command ck_command_refine = {
     .seconds = 300,
     .patience = 30,
     .full_patience = 300,
+    .shares_out = true,
     .run = refine,
 };

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static int run(const ck_Command *command, int argc, char **argv) {
     ck_Arguments arguments;
@@ -13,6 +14,9 @@ static int run(const ck_Command *command, int argc, char **argv) {
                          command->name, arguments.word_count);
     if (!status && arguments.has_width && !arguments.is_pdf)
         status = ck_fail(&error, CK_BAD_INPUT, "--width is of charts as PDF, which --format pdf asks for");
+    // whoever else reads there may
+    if (!status && !access(arguments.words[0], F_OK))
+        status = ck_out_folder_claim(&arguments.folder, arguments.words[0], true, &error);
     ck_command_catch_signals();
     if (!status) status = ck_report_write(arguments.words[0], arguments.is_pdf ? arguments.paper_width : 0, &error);
     if (!status) printf("%s/index.html\n", arguments.words[0]);

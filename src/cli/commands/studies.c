@@ -49,6 +49,7 @@ const ck_Command ck_command_precision = {
     .seconds = 900,
     .patience = 3,
     .full_patience = 20,
+    .shares_out = true,
     .run = precision,
 };
 
@@ -84,6 +85,7 @@ const ck_Command ck_command_stability = {
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_JOBS | CK_TAKES_SHARD,
     .out = "out",
     .seconds = 10,
+    .shares_out = true,
     .run = stability,
 };
 
@@ -133,6 +135,7 @@ const ck_Command ck_command_needs = {
               CK_TAKES_ERROR,
     .out = "out",
     .seconds = 60,
+    .shares_out = true,
     .run = needs,
 };
 

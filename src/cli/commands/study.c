@@ -260,5 +260,6 @@ const ck_Command ck_command_study = {
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_JOBS | CK_TAKES_SHARD | CK_TAKES_STUDY,
     .out = "out",
     .seconds = 300,
+    .shares_out = true,
     .run = run,
 };

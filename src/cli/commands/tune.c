@@ -226,5 +226,6 @@ const ck_Command ck_command_tune = {
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_KEEPING | CK_TAKES_GOAL | CK_TAKES_JOBS,
     .out = "out",
     .seconds = 60,
+    .shares_out = true,
     .run = run_command,
 };
