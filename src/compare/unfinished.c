@@ -27,19 +27,22 @@ static void empty(const char *directory) {
     nftw(directory, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-// How many names a folder has, but for one.
-static int count_names(const char *directory, const char *but) {
+// How many names a folder has, but for those of ours.
+static int count_names(const char *directory, const char *const *ours) {
     int count = 0;
     DIR *folder = directory ? opendir(directory) : NULL;
-    for (struct dirent *entry; folder && (entry = readdir(folder));)
-        count += *entry->d_name != '.' && strcmp(entry->d_name, but);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        bool is_ours = *entry->d_name == '.';
+        for (const char *const *name = ours; *name && !is_ours; name++) is_ours = !strcmp(entry->d_name, *name);
+        count += !is_ours;
+    }
     if (folder) closedir(folder);
     return count;
 }
 
 static int count_scenes(const char *directory) {
     char *scenes = ck_path_join(directory, SCENES);
-    const int count = count_names(scenes, "");
+    const int count = count_names(scenes, (const char *const[]){NULL});
     free(scenes);
     return count;
 }
@@ -61,9 +64,9 @@ ck_Status ck_unfinished_open(ck_Unfinished *unfinished, const char *out, const c
     if (!failed && (unfinished->question = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666)) < 0) failed = errno;
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s/unfinished: %s", out, strerror(failed)) : CK_OK;
     // a folder of that name that is somebody else's is not ours to empty
+    static const char *const ours[] = {QUESTION, SCENES, CK_REPLAY_DIRECTORY, NULL};
     struct stat about;
-    if (!status && !fstat(unfinished->question, &about) && !about.st_size &&
-        count_names(unfinished->directory, QUESTION)) {
+    if (!status && !fstat(unfinished->question, &about) && !about.st_size && count_names(unfinished->directory, ours)) {
         status = ck_fail(error, CK_BAD_INPUT,
                          "%s: is no folder of an unfinished comparison; give another --out, or move it away",
                          unfinished->directory);
@@ -107,11 +110,22 @@ bool ck_unfinished_take(const ck_Unfinished *unfinished, const ck_Comparison *co
     return is_whole;
 }
 
+static bool is_in_place(const ck_Unfinished *unfinished) {
+    char *path = ck_path_join(unfinished->directory, QUESTION);
+    struct stat named, held;
+    const bool is = path && !stat(path, &named) && !fstat(unfinished->question, &held) && named.st_ino == held.st_ino;
+    free(path);
+    return is;
+}
+
 ck_Status ck_unfinished_keep(const ck_Unfinished *unfinished, const ck_Comparison *comparison,
                              const ck_CompareOptions *options, ck_Error *error) {
     ck_Tables tables = {0};
     char *folder = folder_of(unfinished, comparison);
     ck_Status status = folder ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    // what is written without its question is nobody's
+    if (!status && !is_in_place(unfinished))
+        status = ck_fail(error, CK_IO, "%s: was moved or removed while the comparison ran", unfinished->directory);
     if (!status) status = ck_replay_write(comparison, unfinished->directory, false, CK_REPLAY_FRAMES, error);
     if (!status) status = ck_tables_open(&tables, folder, CK_KEEP_NONE, false, comparison, 1, options, error);
     if (!status) ck_tables_add(&tables, comparison, options);

@@ -1,6 +1,7 @@
 // Loaded before a program's libraries, it makes one thing go wrong at a moment that is counted, not timed:
 //
 //   DISTURB=kill:N:SIGNAL   at the N-th time that the program is about to change a file or to start a process
+//   DISTURB=vanish:N        at that time the folder out gets the name gone
 //   DISTURB=alloc:N         the N-th allocation finds no memory
 //   DISTURB=count           nothing
 //
@@ -18,6 +19,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 typedef struct Counts {
@@ -25,7 +27,7 @@ typedef struct Counts {
 } Counts;
 
 static Counts *counts;
-static long kill_at, fail_at;
+static long kill_at, fail_at, vanish_at;
 static int wanted_signal;
 static pid_t root;
 static atomic_long held; // of this process
@@ -36,6 +38,7 @@ __attribute__((constructor)) static void begin(void) {
     if (!what || shared == MAP_FAILED) return;
     sscanf(what, "kill:%ld:%d", &kill_at, &wanted_signal);
     sscanf(what, "alloc:%ld", &fail_at);
+    sscanf(what, "vanish:%ld", &vanish_at);
     root = getpid();
     // programs that it runs are not disturbed
     unsetenv("LD_PRELOAD");
@@ -56,7 +59,9 @@ __attribute__((destructor)) static void end(void) {
 
 static void announce(void) {
     if (!counts) return;
-    if (atomic_fetch_add(&counts->moments, 1) + 1 == kill_at) kill(root, wanted_signal);
+    const long moment = atomic_fetch_add(&counts->moments, 1) + 1;
+    if (moment == kill_at) kill(root, wanted_signal);
+    if (moment == vanish_at) syscall(SYS_rename, "out", "gone");
 }
 
 static bool has_no_memory(void) {
