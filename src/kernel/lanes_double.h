@@ -28,7 +28,7 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
-    return __builtin_shuffle(before, value, (ck_LaneBits){7, 8, 9, 10, 11, 12, 13, 14});
+    return __builtin_shufflevector(before, value, 7, 8, 9, 10, 11, 12, 13, 14);
 }
 #elif CK_LANES == 4
 typedef __m256d ck_LaneMask;
@@ -58,7 +58,7 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
-    return __builtin_shuffle(before, value, (ck_LaneBits){3, 4, 5, 6});
+    return __builtin_shufflevector(before, value, 3, 4, 5, 6);
 }
 #else
 typedef ck_LaneBits ck_LaneMask;
@@ -92,7 +92,7 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
-    return __builtin_shuffle(before, value, (ck_LaneBits){1, 2});
+    return __builtin_shufflevector(before, value, 1, 2);
 }
 #endif
 

@@ -28,8 +28,7 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
-    return __builtin_shuffle(before, value,
-                             (ck_LaneBits){15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30});
+    return __builtin_shufflevector(before, value, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30);
 }
 #elif CK_LANES == 8
 typedef __m256 ck_LaneMask;
@@ -59,7 +58,7 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
-    return __builtin_shuffle(before, value, (ck_LaneBits){7, 8, 9, 10, 11, 12, 13, 14});
+    return __builtin_shufflevector(before, value, 7, 8, 9, 10, 11, 12, 13, 14);
 }
 #else
 typedef ck_LaneBits ck_LaneMask;
@@ -94,7 +93,7 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 }
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
-    return __builtin_shuffle(before, value, (ck_LaneBits){3, 4, 5, 6});
+    return __builtin_shufflevector(before, value, 3, 4, 5, 6);
 }
 #endif
 

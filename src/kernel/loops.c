@@ -1,5 +1,9 @@
 #include "loops.h"
 
+#ifdef CK_HAS_X86_VECTORS
+#include "processor.h"
+#endif
+
 #include <stddef.h>
 
 extern const ck_Loops ck_loops_plain, ck_loops_v3, ck_loops_v4;
@@ -16,8 +20,8 @@ static const ck_Loops *const all[] = {
 
 const ck_Loops *ck_loops_at(int index) {
 #ifdef CK_HAS_X86_VECTORS
-    if (!__builtin_cpu_supports("x86-64-v4")) index++;
-    if (!__builtin_cpu_supports("x86-64-v3")) index++;
+    if (!ck_processor_has_v4()) index++;
+    if (!ck_processor_has_v3()) index++;
 #endif
     return index < (int)(sizeof all / sizeof *all) ? all[index] : NULL;
 }

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -20,6 +21,16 @@ static inline int fuzz_file(char path[40], const uint8_t *data, size_t size) {
     if (file < 0 || write(file, data, size) != (ssize_t)size) abort();
     snprintf(path, 40, "/proc/self/fd/%d", file);
     return file;
+}
+
+// The input as a file of that name, in a folder of this process's own, where it stays from then on.
+static inline void fuzz_write(const char *name, const uint8_t *data, size_t size) {
+    static char folder[] = "/tmp/clothcheck-fuzz-XXXXXX";
+    static int is_there;
+    if (!is_there && (!mkdtemp(folder) || chdir(folder) || mkdir("replays", 0777))) abort();
+    is_there = 1;
+    FILE *file = fopen(name, "wb");
+    if (!file || fwrite(data, 1, size, file) != size || fclose(file)) abort();
 }
 
 // The model of a scene of this many bytes, made once.

@@ -39,14 +39,12 @@ CK_INLINE ck_Point ck_point_add_scaled(ck_Point a, double scale, ck_Point b) {
 
 // As many points as there are lanes.
 CK_INLINE ck_Lanes3 ck_points_across(const ck_Point *points) {
-    const ck_LaneBits first = {0, 2}, second = {1, 3};
-    return (ck_Lanes3){__builtin_shuffle(points[0].xy, points[1].xy, first),
-                       __builtin_shuffle(points[0].xy, points[1].xy, second),
-                       __builtin_shuffle(points[0].z, points[1].z, first)};
+    return (ck_Lanes3){__builtin_shufflevector(points[0].xy, points[1].xy, 0, 2),
+                       __builtin_shufflevector(points[0].xy, points[1].xy, 1, 3),
+                       __builtin_shufflevector(points[0].z, points[1].z, 0, 2)};
 }
 #else
 typedef double ck_Point __attribute__((vector_size(32), aligned(32), may_alias));
-typedef int64_t ck_PointBits __attribute__((vector_size(32), aligned(32), may_alias));
 
 CK_INLINE ck_Point ck_point_load(const double *from) {
     return *(const ck_Point *)from;
@@ -78,13 +76,12 @@ typedef struct ck_Points3 {
 
 // Four points as three vectors.
 CK_INLINE ck_Points3 ck_points_turn(const ck_Point *points) {
-    const ck_PointBits low = {0, 4, 2, 6}, high = {1, 5, 3, 7}, halves = {0, 1, 4, 5}, others = {2, 3, 6, 7};
-    const ck_Point xz = __builtin_shuffle(points[0], points[1], low),
-                   xz2 = __builtin_shuffle(points[2], points[3], low);
-    const ck_Point y = __builtin_shuffle(points[0], points[1], high),
-                   y2 = __builtin_shuffle(points[2], points[3], high);
-    return (ck_Points3){__builtin_shuffle(xz, xz2, halves), __builtin_shuffle(y, y2, halves),
-                        __builtin_shuffle(xz, xz2, others)};
+    const ck_Point xz = __builtin_shufflevector(points[0], points[1], 0, 4, 2, 6),
+                   xz2 = __builtin_shufflevector(points[2], points[3], 0, 4, 2, 6);
+    const ck_Point y = __builtin_shufflevector(points[0], points[1], 1, 5, 3, 7),
+                   y2 = __builtin_shufflevector(points[2], points[3], 1, 5, 3, 7);
+    return (ck_Points3){__builtin_shufflevector(xz, xz2, 0, 1, 4, 5), __builtin_shufflevector(y, y2, 0, 1, 4, 5),
+                        __builtin_shufflevector(xz, xz2, 2, 3, 6, 7)};
 }
 
 #if CK_LANES == 4
