@@ -255,6 +255,7 @@ static void test_threads(void **state) {
         check_threads(60, columns, "shear: 50", 7, 4);
         check_threads(60, columns, "shear: 50, bend: 20", 7, 4);
     }
+    fixture_skip_long();
     // beyond a second cache, several passes run interleaved, and fewer of them with threads
     check_threads(300, 90, "shear: 50", 24, 3);
     check_threads(160, 72, "shear: 50, bend: 20", 24, 2);

@@ -67,6 +67,7 @@ static void test_order(void **state) {
 // steps as long as are stable, and end where small ones do.
 static void test_rest(void **state) {
     (void)state;
+    fixture_skip_long();
     static const char *const kinds[] = {
         "", "force: [0, 0.01, 0]\ncolliders: [{plane: {point: [0, -3, 0], normal: [0, 1, 0]}}]\n",
         "wind: {velocity: [0.5, 0, 0.2], drag: 1.2}\n"};

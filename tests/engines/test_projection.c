@@ -256,6 +256,7 @@ static double end_speed(const char *text, const ck_Settings *settings) {
 // to 1 % of it, and friction that is held to what one sweep pushes lets the second slide.
 static void test_rest(void **state) {
     (void)state;
+    fixture_skip_long();
     static const char blown[] = "cloth: {rows: 25, columns: 25, spacing: 0.05, mass: 0.3125, across: [1, 0, 0], down: "
                                 "[0, -1, 0]}\nsprings: {rigid: true, shear: 1}\npins: [0:0, 3:0, 6:0, 9:0, 12:0, 15:0, "
                                 "18:0, 21:0, 24:0]\nforce: [0.01, 0, 0.002]\n",

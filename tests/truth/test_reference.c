@@ -25,6 +25,7 @@ static void test_reference_order(void **state) {
 // A rope thrown about is chaotic: its horizon ends before the scene does. A damped one is not.
 static void test_horizon(void **state) {
     (void)state;
+    fixture_skip_long();
     static const char text[] = "name: wild\nrope: {particles: 20, spacing: 0.1, mass: 1, along: [1, 0.3, 0]}\nsprings: "
                                "{stiffness: 1000}\npins: [first]\nnoise: {amplitude: 0.01, seed: 2}\n"
                                "gravity: [0, -9.81, 0]\ndrag: %g\ntime: {duration: 3, step: 0.02}\ntruth: trajectory\n";
@@ -53,6 +54,7 @@ static void test_horizon(void **state) {
 
 static void test_ensemble(void **state) {
     (void)state;
+    fixture_skip_long();
     static const char *const names[] = {"sag", "stretch_max", "stretch_rms"};
     int tries = 0, outside = 0;
     for (int noise = 1; noise <= STARTS; noise++) {

@@ -252,6 +252,7 @@ static void add_wound(Text *text, int nodes, double radius, double hangs, double
 
 static void test_pulley(void **state) {
     (void)state;
+    fixture_skip_long();
     Text text = {.length = 0};
     double mass[PULLEY_NODES], tension[PULLEY_NODES];
     const double length = 2 * PULLEY_HANGS + M_PI * PULLEY_RADIUS, node = 0.05 * length / (PULLEY_NODES - 1);
@@ -314,6 +315,7 @@ static double slides_by(double factor) {
 
 static void test_capstan(void **state) {
     (void)state;
+    fixture_skip_long();
     // at 1.05 the weights gain g·(1 − 1/1.05)·m/(m + 1) = 0.33 m/s², 6.6 mm
     assert_near("holds", slides_by(0.95), 0, 1e-3);
     assert_near("slides", slides_by(1.05), 6.6e-3, 2e-3);

@@ -45,7 +45,7 @@ static void test_closed_forms(void **state) {
 
 // The sanitizers, which make it ten times as slow, need not see them all.
 #ifdef __SANITIZE_ADDRESS__
-#define SEEDS 4
+#define SEEDS 2
 #else
 #define SEEDS 50
 #endif

@@ -276,6 +276,7 @@ static void test_saddle(void **state) {
 // Every shipped scene with a truth at rest: the forces balance to 1e-10 of the load.
 static void test_shipped_equilibria(void **state) {
     (void)state;
+    fixture_skip_long();
     glob_t found;
     assert_int_equal(glob(SCENE_DIRECTORY "/*.yaml", 0, NULL, &found), 0);
     int checked = 0;
@@ -334,6 +335,7 @@ static void write_rope_over_ball(char *text, size_t size, double density, double
 // And the truth along the arc is where a whole time stepping in space comes to, within what it says of itself.
 static void test_capstan(void **state) {
     (void)state;
+    fixture_skip_long();
     const double densities[] = {0.1, 0.5, 2, 5};
     const ck_Metric *friction = ck_metric_find("wrap_friction"), *sag = ck_metric_find("sag");
     for (size_t i = 0; i < sizeof densities / sizeof *densities; i++) {
@@ -358,6 +360,7 @@ static void test_capstan(void **state) {
 // On a smooth ball nothing holds a rope sideways: a truth that says how it slides on says also until when.
 static void test_unstable(void **state) {
     (void)state;
+    fixture_skip_long();
     static char text[20000];
     TruthFixture fixture;
     write_rope_over_ball(text, sizeof text, 0.02, 0);
