@@ -34,6 +34,13 @@ ck_Status ck_file_read(char **bytes, size_t *size, const char *path, ck_Error *e
     return status;
 }
 
+ck_Status ck_file_status(int why) {
+    static const int inputs[] = {ENOENT, ENOTDIR, EISDIR, EACCES, EPERM, ELOOP, ENAMETOOLONG, EINVAL};
+    for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
+        if (why == inputs[i]) return CK_BAD_INPUT;
+    return why == ENOMEM ? CK_NO_MEMORY : CK_IO;
+}
+
 size_t ck_text_mark(const char *bytes, size_t size) {
     return size >= 3 && !memcmp(bytes, "\xef\xbb\xbf", 3) ? 3 : 0;
 }

@@ -38,6 +38,9 @@ bool ck_path_data(char *out, size_t size);
 // libexec/clothcheck/adapters where it is installed. False where there is none.
 bool ck_path_adapters(char *out, size_t size);
 
+// What an errno of opening a file to read is: CK_BAD_INPUT where it is its name or its rights, CK_NO_MEMORY, or CK_IO.
+ck_Status ck_file_status(int why);
+
 // A folder to work in, directory/name.NUMBER.part: it is locked, so that it is nobody's once this process is dead.
 typedef struct ck_PartFolder {
     char *path; // NULL: none

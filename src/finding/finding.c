@@ -69,7 +69,8 @@ ck_Status ck_findings_read(ck_Findings *findings, const char *directory, ck_Erro
     const ck_CsvTable *tables[CK_REPORT_LAYOUTS] = {NULL};
     ck_Status status = CK_OK;
     *findings = (ck_Findings){0};
-    if (access(directory, R_OK | X_OK)) return ck_fail(error, CK_BAD_INPUT, "%s: %s", directory, strerror(errno));
+    if (access(directory, R_OK | X_OK))
+        return ck_fail(error, ck_file_status(errno), "%s: %s", directory, strerror(errno));
     for (size_t i = 0; i < sizeof rules / sizeof *rules + 1 && !status; i++) {
         const ck_LayoutName name = i ? rules[i - 1].needs : CK_METRICS;
         char *path = ck_path_join(directory, ck_layouts[name].file);

@@ -1,5 +1,6 @@
 #include "mesh.h"
 
+#include "files.h"
 #include "mesh_import.h"
 #include "process.h"
 
@@ -82,7 +83,7 @@ static ck_Status check_file(ck_Limits *limits, const char *path, ck_Error *error
     bool is_known = false;
     for (size_t i = 0; i < sizeof endings / sizeof *endings && ending; i++) is_known |= !strcasecmp(ending, endings[i]);
     if (stat(path, &info))
-        return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a mesh", path, strerror(errno));
+        return ck_fail(error, ck_file_status(errno), "%s: %s; give the path of a mesh", path, strerror(errno));
     if (!S_ISREG(info.st_mode)) return ck_fail(error, CK_BAD_INPUT, "%s: is not a file; give the path of a mesh", path);
     if (!is_known)
         return ck_fail(error, CK_BAD_INPUT, "%s: is of no known kind; a mesh is a .obj, .ply, .stl, .gltf or .glb",

@@ -1,6 +1,7 @@
 #include "document.h"
 
 #include "change.h"
+#include "files.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -15,14 +16,14 @@ static ck_Status read_text(ck_Document *document, ck_Error *error) {
     const char *path = document->file, *kind = document->kind->name;
     struct stat info;
     if (stat(path, &info))
-        return ck_fail(error, CK_BAD_INPUT, "%s: %s; give the path of a %s file", path, strerror(errno), kind);
+        return ck_fail(error, ck_file_status(errno), "%s: %s; give the path of a %s file", path, strerror(errno), kind);
     if (!S_ISREG(info.st_mode))
         return ck_fail(error, CK_BAD_INPUT, "%s: is not a file; give the path of a %s file", path, kind);
     if (info.st_size > CK_DOCUMENT_MAX_BYTES)
         return ck_fail(error, CK_BAD_INPUT, "%s: is %lld bytes long; a %s file has at most %u", path,
                        (long long)info.st_size, kind, CK_DOCUMENT_MAX_BYTES);
     FILE *file = fopen(path, "rb");
-    if (!file) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, strerror(errno));
+    if (!file) return ck_fail(error, ck_file_status(errno), "%s: %s", path, strerror(errno));
     document->text = malloc((size_t)info.st_size + 1);
     if (document->text) document->length = fread(document->text, 1, (size_t)info.st_size, file);
     ck_Status status = CK_OK;

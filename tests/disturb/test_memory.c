@@ -8,7 +8,7 @@
 
 #include <sys/wait.h>
 
-#define ALLOCATIONS 10
+#define ALLOCATIONS 8
 
 static char directory[100], said[20000];
 

@@ -101,7 +101,6 @@ static const struct {
     {"closed streams", "cd %s && exec %s %s <&- >&- 2>&- # %s", NULL},
     {"a reader that has gone", "cd %s && { %s %s 2>%s/said; true; } | true", NULL},
     {"a decimal comma", "cd %s && LC_ALL=de_DE.UTF-8 LC_NUMERIC=de_DE.UTF-8 exec %s %s >%s/said 2>&1", NULL},
-    {"no environment", "cd %s && exec env -i %s %s >%s/said 2>&1", NULL},
 };
 
 static void test_surroundings(void **state) {

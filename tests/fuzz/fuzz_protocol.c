@@ -1,5 +1,5 @@
-// Engines that are commands: whatever one says, its hello is taken or refused, and a run of it has a status and a reason.
-// It says the input: up to the line "end" as its hello, and what follows in a run.
+// Engines that are commands: whatever one says, its hello is taken or refused, and a run of it has a status and a
+// reason. It says the input: up to the line "end" as its hello, and what follows in a run.
 #include "fuzz.h"
 
 #include "outside.h"

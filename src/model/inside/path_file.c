@@ -115,7 +115,7 @@ ck_Status ck_path_file_read(double (**points)[4], int *count, const char *path, 
     Reader reader = {.path = path, .line = 1, .error = error};
     struct stat info;
     FILE *file = stat(path, &info) ? NULL : fopen(path, "rb");
-    if (!file) return ck_fail(error, CK_BAD_INPUT, "%s: %s", path, strerror(errno));
+    if (!file) return ck_fail(error, ck_file_status(errno), "%s: %s", path, strerror(errno));
     if (!S_ISREG(info.st_mode) || info.st_size > MOST_BYTES)
         reader.status = ck_fail(error, CK_BAD_INPUT, "%s: must be a file of at most %d bytes", path, MOST_BYTES);
     make_room(&reader);

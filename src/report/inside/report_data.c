@@ -93,7 +93,7 @@ static ck_Status read_tables(ck_ReportData *data, ck_Error *error) {
     ck_Status status = CK_OK;
     int found = 0;
     if (access(data->directory, R_OK | X_OK))
-        return ck_fail(error, CK_BAD_INPUT, "%s: %s", data->directory, strerror(errno));
+        return ck_fail(error, ck_file_status(errno), "%s: %s", data->directory, strerror(errno));
     for (int i = 0; i < CK_REPORT_LAYOUTS && !status; i++) {
         char *path = ck_path_join(data->directory, ck_layouts[i].file);
         if (!path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
