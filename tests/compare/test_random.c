@@ -1,6 +1,6 @@
 // Random scenes over every key, from a milligram to a tonne and from 1e-3 to 1e9 N/m: each engine has a row with a
-// status and a reason, no result that is called ok is absurd, and all limits are kept. RANDOM_SCENES says how many, and
-// RANDOM_SEED which is the first.
+// status and a reason, no result that is called ok is absurd, all limits are kept, and a second run gives the same
+// bits. RANDOM_SCENES says how many, and RANDOM_SEED which is the first.
 #include "fixture_comparison.h"
 
 #include "process.h"
@@ -13,7 +13,7 @@
 #ifdef __SANITIZE_ADDRESS__
 #define SCENES 4
 #else
-#define SCENES 12
+#define SCENES 80
 #endif
 
 // Seconds of a run, of CPU and on the wall, and of what the parent does beside.
@@ -216,6 +216,31 @@ static void check_run(const ck_Comparison *comparison, int index, const char *te
         fail_msg("%s is ok, %.3g m from its start, where %.3g m are far\n%s", run->engine->name, reach, bound, text);
 }
 
+// What ended before a limit of time ends alike, to the last bit.
+static void check_again(const ck_Comparison *comparison, const ck_CompareOptions *options, int index,
+                        const char *text) {
+    const ck_Run *run = &comparison->runs[index];
+    ck_Settings wanted = ck_comparison_settings(run->engine, &comparison->scene, options);
+    ck_Run again;
+    if (run->status == CK_RUN_TIMED_OUT || run->status == CK_RUN_TOO_SLOW) return;
+    assert_int_equal(ck_verdict_run(&again, &comparison->model, &comparison->truth.reference, run->engine, &wanted,
+                                    &options->limits, NULL),
+                     CK_OK);
+    const bool is_cut = again.status == CK_RUN_TIMED_OUT || again.status == CK_RUN_TOO_SLOW;
+    const size_t bytes = 6 * sizeof(double) * (size_t)comparison->model.particle_count;
+    if (!is_cut && again.status != run->status)
+        fail_msg("%s is %s, and then %s\n%s", run->engine->name, ck_run_status_names[run->status],
+                 ck_run_status_names[again.status], text);
+    for (int frame = 0; frame < run->trajectory.frame_count && !is_cut; frame++)
+        if (memcmp(ck_trajectory_position(&run->trajectory, frame), ck_trajectory_position(&again.trajectory, frame),
+                   bytes))
+            fail_msg("%s differs from itself in frame %d\n%s", run->engine->name, frame, text);
+    ck_run_free(&again);
+}
+
+// One scene in so many is run twice.
+#define AGAIN 5
+
 static int number_of(const char *name, int otherwise) {
     const char *text = getenv(name);
     return text ? atoi(text) : otherwise;
@@ -249,6 +274,7 @@ static void test_random_scenes(void **state) {
             if (took > SECONDS * (1 + 7 * comparison.run_count) + BESIDE) fail_msg("seed %d took %.1f s", seed, took);
             for (int i = 0; i < comparison.run_count; i++) {
                 check_run(&comparison, i, text.bytes);
+                if (seed % AGAIN == 0) check_again(&comparison, &options, i, text.bytes);
                 counts[comparison.runs[i].status]++;
             }
             valid++;
