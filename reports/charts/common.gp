@@ -1,5 +1,7 @@
 # What all charts share. 'looks.gp' before it says which engines there are, and how each looks: engines, place(name).
-# In: data, the chart's CSV; title. Out: present, the engines in its first column.
+# In: data, the chart's CSV; title. Out: present, the engines in its first column; log_axes, those with a scale of
+# logarithms, which a script says; it says 'none' where it draws several panels or no numbers.
+log_axes = ''
 set datafile separator comma
 # a row of another engine does not break the line of this one
 set datafile missing NaN

@@ -1,6 +1,7 @@
 # Error against cost: the nearer to the lower left, the better. Engine, ms, error, uncertainty, on front, metric, status,
 # error of moving nothing.
 set logscale xy
+log_axes = 'xy'
 set format x '10^{%L}'
 set format y '10^{%L}'
 set xlabel 'CPU time per simulated second, ms'

@@ -1,5 +1,6 @@
 # Each metric's error by engine, and how well its truth is known. Engine, metric, error, uncertainty.
 set logscale y
+log_axes = 'y'
 set format y '10^{%L}'
 set ylabel "error, in the metric's unit; 0 stands at 10^{-16}"
 metrics = ''

@@ -34,3 +34,4 @@ do for [engine in present] {
 		title (place_in(own, level) ? level.(level eq '1' ? ' iteration' : ' iterations') : '')
 }
 unset multiplot
+log_axes = 'none'

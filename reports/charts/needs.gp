@@ -8,6 +8,7 @@ stats data using (learn(strcol(1))) skip 1 nooutput
 metrics = ''
 stats data using (metrics = add(metrics, strcol(2)), 0) skip 1 nooutput
 set logscale x
+log_axes = 'x'
 set format x '10^{%L}'
 set xlabel 'change / tolerance: what is right of the line is needed; what is beyond the axis stands at its end'
 set xrange [5e-5:2e4]

@@ -2,6 +2,7 @@
 # truth's uncertainty, the share of a step's fall
 # that is the spacing of numbers.
 set logscale xy
+log_axes = 'xy'
 set format x '10^{%L}'
 set format y '10^{%L}'
 set xlabel 'CPU time for the scene, s'

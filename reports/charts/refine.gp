@@ -13,3 +13,4 @@ do for [kind in kinds] {
 		with linespoints linetype place(engine) title engine noenhanced
 }
 unset multiplot
+log_axes = 'none'

@@ -21,3 +21,4 @@ if (place_in(kinds, 'growth_step_time')) {
 		STATS_records ? STATS_median*x : NaN linecolor '#444444' dashtype 3 title 'as the number of particles'
 }
 unset multiplot
+log_axes = 'none'

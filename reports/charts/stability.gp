@@ -51,3 +51,4 @@ plot for [i = 1:words(states)] (strstrt(found.' ', ' '.word(states, i).' ') ? 2 
 	2 with points pointtype 3 linecolor '#000000' title 'critical step, bisected', \
 	2 with lines linecolor '#aa0000' linewidth 2 dashtype 3 title 'a step falls by the spacing of numbers'
 unset multiplot
+log_axes = 'none'

@@ -24,3 +24,4 @@ do for [p = 0:panels - 1] {
 		with linespoints linetype place(engine) title engine noenhanced
 }
 unset multiplot
+log_axes = 'none'

@@ -1,13 +1,10 @@
 // What there is of one scene, and of all: charts, and the rows of each CSV.
 
 async function chartFigure(chart, scene) {
-	const svg = await fileText(chart.file + ".svg");
-	const title = (scene ? scene + ": " : "") + chart.title;
-	const image = element("img", { alt: title, width: chart.width, height: chart.height,
-		src: URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" })) });
+	const title = (scene ? scene + ": " : "") + chart.title, drawing = await chartElement(chart.file, title);
 	const links = ["svg", "png", "csv"].flatMap((ending) =>
 		[" ", element("a", { href: `charts/${chart.file}.${ending}`, textContent: ending })]);
-	const figure = element("figure", {}, image, element("figcaption", {}, title + ":", ...links));
+	const figure = element("figure", {}, drawing, element("figcaption", {}, title + ":", ...links));
 	figure.dataset.chart = chart.name;
 	return figure;
 }

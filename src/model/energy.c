@@ -45,8 +45,29 @@ double ck_energy_scale(const ck_Model *model, const ck_Trajectory *trajectory) {
     return fmax(scale, drop);
 }
 
+// How much faster than what drives it a whole body may get, at its resonance or thrown to and fro; and how much higher.
+#define DRIVEN 30
+
+// What air, pins and colliders give is what they give; but no body gets many times their speed and height.
+static double driven_scale(const ck_Model *model) {
+    double speed = ck_length(model->wind.velocity), height = speed * model->duration, mass = 0, field[3];
+    for (int i = 0; i < model->path_count; i++)
+        for (int frame = 0; frame <= model->frame_count; frame++)
+            for (int side = -1; side < 2; side += 2) {
+                double moved[3], velocity[3], acceleration[3];
+                ck_path_at(&model->paths[i], frame * model->step, side, moved, velocity, acceleration);
+                speed = fmax(speed, ck_length(velocity));
+                height = fmax(height, ck_length(moved));
+            }
+    for (int i = 0; i < model->particle_count; i++) mass += model->mass[i];
+    ck_model_mean_field(model, field);
+    return mass * (0.5 * DRIVEN * DRIVEN * speed * speed + DRIVEN * ck_length(field) * height);
+}
+
 double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *trajectory) {
-    if (ck_model_is_worked_on(model)) return 0; // it gets what is given
+    // a scene that changes has what it is changed to
+    if (model->segment_count) return 0;
+    const double driven = ck_model_is_worked_on(model) ? driven_scale(model) : 0;
     bool is_snapping = (model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model);
     int first = is_snapping ? (trajectory->frame_count + 9) / 10 : 1;
     ck_Energy start = ck_energy_at(model, trajectory, 0);
@@ -59,7 +80,7 @@ double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *traject
         else
             gained = fmax(gained, motion - total);
     }
-    return gained / fmax(ck_energy_scale(model, trajectory), is_snapping ? total : 0);
+    return gained / (driven + fmax(ck_energy_scale(model, trajectory), is_snapping ? total : 0));
 }
 
 // What drag and springs take at a frame, W. A pin that is not let go has no speed.

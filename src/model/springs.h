@@ -50,7 +50,8 @@ double ck_energy_total(const ck_Energy *energy);
 double ck_energy_scale(const ck_Model *model, const ck_Trajectory *trajectory);
 
 // By how much kinetic and field energy exceed at most all the energy there was, / scale; 0 where they never do. A bound
-// that holds whatever stiffness an engine really has: energy in springs is never negative. Rigid bars that start off
+// that holds whatever stiffness an engine really has: energy in springs is never negative. What air, pins and colliders
+// that move may give counts as there. Rigid bars that start off
 // their length have no energy at the start: then the first tenth of the run counts as the start.
 double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *trajectory);
 

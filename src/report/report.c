@@ -13,7 +13,7 @@
 
 // Charts are files that a report has written, or the user's own things lie among them and would be lost.
 static ck_Status check_charts(const char *charts, ck_Error *error) {
-    static const char *const endings[] = {".svg", ".png", ".pdf", ".csv", ".gp", ".log"};
+    static const char *const endings[] = {".svg", ".png", ".pdf", ".csv", ".gp", ".log", ".axes"};
     DIR *directory = opendir(charts);
     ck_Status status = CK_OK;
     if (!directory && errno != ENOENT) return ck_fail(error, CK_IO, "%s: %s", charts, strerror(errno));

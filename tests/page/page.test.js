@@ -247,6 +247,39 @@ test("tables of a scene hold its rows, and are sorted by a click", async () => {
 	await details.locator("summary").click();
 });
 
+test("a chart answers when pointed at, hides a series, and comes closer", async () => {
+	await selectScene("rope_hanging");
+	const figure = page.locator('#scene-charts figure[data-chart="cost"]'), svg = figure.locator("svg");
+	await svg.scrollIntoViewIfNeeded();
+	// each engine's mark tells the numbers of its row
+	const rows = readFileSync(join(directory, "charts/rope_hanging.cost.csv"), "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
+	const engine = rows.find((row) => row[0] === "native-xpbd");
+	const at = await figure.evaluate((figure, name) => {
+		const groups = [...figure.querySelectorAll("g[id*=gnuplot_plot_]")];
+		const group = groups.find((group) => group.querySelector("text")?.textContent.trim() === name);
+		const box = group.querySelector("use").getBoundingClientRect();
+		return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+	}, "native-xpbd");
+	await page.mouse.move(at.x, at.y);
+	const told = await figure.locator(".chart-tip").innerText(), [, y, x] = /^native-xpbd: (\S+) at (\S+)$/.exec(told);
+	const near = (value, wanted) => assert.ok(Math.abs(Number(value) / Number(wanted) - 1) < 0.02, `${value}, ${wanted}`);
+	near(x, engine[1]);
+	near(y, engine[2]);
+	// its name in the key takes it away, for the pointer too, and brings it back
+	const key = figure.getByRole("button", { name: "show native-xpbd" });
+	await key.click();
+	assert.equal(await key.getAttribute("aria-pressed"), "false");
+	await page.mouse.move(at.x + 1, at.y);
+	assert.doesNotMatch(await figure.locator(".chart-tip").innerText(), /native-xpbd/);
+	await key.press("Enter");
+	assert.equal(await key.getAttribute("aria-pressed"), "true");
+	const whole = await svg.getAttribute("viewBox");
+	await svg.press("+");
+	assert.notEqual(await svg.getAttribute("viewBox"), whole);
+	await svg.press("0");
+	assert.equal(await svg.getAttribute("viewBox"), whole);
+});
+
 // A chart of the first asked for, or its replay, is held up until the second is shown, and comes last.
 for (const held of ["cloth_two_corners.cost.svg", "cloth_two_corners.replay"])
 	test(`of two scenes asked for in a row the second is shown, when ${held} is late`, async () => {
@@ -482,7 +515,7 @@ test("a page of a study alone opens, too", async () => {
 	other.on("pageerror", (error) => errors.push(error.message));
 	await other.goto(`file://${study}/index.html`);
 	await other.waitForFunction(() => document.body.dataset.ready === "yes");
-	assert.equal(await other.locator('figure[data-chart="stability"] img').count(), 1);
+	assert.equal(await other.locator('figure[data-chart="stability"] svg').count(), 1);
 	assert.equal(await other.locator("#answer").isHidden(), true);
 	assert.deepEqual(errors, []);
 	await other.close();

@@ -74,6 +74,12 @@ static const Case cases[] = {
     {"floor_for_long", "bullet-implicit", {.substeps = 8, .iterations = 1}, CK_RUN_OK, "sag", 1, 1e-5},
     {"floor_for_long", "bullet-explicit", {.substeps = 16}, CK_RUN_OK, "sag", 1, 1e-5},
     {"floor_for_long", "ode-quick", {.substeps = 8, .iterations = 20}, CK_RUN_OK, "sag", 1, 1e-5},
+    // farther from a collider than Bullet's distances can count, at the start and later
+    {"far_from_a_grain", "bullet-pbd", {0}, CK_RUN_REFUSED, NULL, 0, 0},
+    {"far_from_a_grain", "bullet-implicit", {0}, CK_RUN_REFUSED, NULL, 0, 0},
+    {"thrown_far", "bullet-pbd", {0}, CK_RUN_DIVERGED, NULL, 0, 0},
+    // a collider that moves gives some energy, but not a million times its own speed
+    {"flung_in_contact", "bullet-implicit", {0}, CK_RUN_ENERGY_GAIN, NULL, 0, 0},
     // a minute on the floor
     {"lies_there", "bullet-pbd", {.substeps = 4, .iterations = 1}, CK_RUN_OK, "rest_height", 0, 1e-3},
 };

@@ -111,7 +111,10 @@ static void write_plot(FILE *file, const ck_Chart *chart, const char *scene, con
             chart->is_of_all ? "" : scene, chart->is_of_all ? "" : ": ", chart->title);
     write_terminal(file, chart, terminal, paper_width);
     fprintf(file, "set output '%s.%s'\n", name, ending);
-    fprintf(file, "load sources.'/common.gp'\nload sources.'/%s.gp'\nunset output\nundefine is_paper\n", chart->name);
+    fprintf(file, "load sources.'/common.gp'\nload sources.'/%s.gp'\n", chart->name);
+    if (terminal == screen_svg)
+        fprintf(file, "axes = '%s.axes'\nheight = %d.0\nload sources.'/axes.gp'\n", name, chart->height);
+    fprintf(file, "unset output\nundefine is_paper\n");
 }
 
 // Writes a chart's CSV. Returns its rows, and without any takes it away; -1: it cannot be written.

@@ -195,6 +195,8 @@ static ck_Status pack_charts(const Page *page, ck_Error *error) {
                           scene < page->data->scene_count ? page->data->scenes[scene] : NULL);
             snprintf(file, sizeof file, "%s.svg", name);
             status = pack_file(page, page->charts, file, error);
+            snprintf(file, sizeof file, "%s.axes", name);
+            if (!status) status = pack_file(page, page->charts, file, error);
         }
     return status;
 }
