@@ -84,8 +84,15 @@ class Live {
 	}
 
 	startDrawing() {
-		this.renderer = new THREE.WebGLRenderer({ canvas: byId("canvas"), antialias: false, alpha: true });
+		this.renderer = new THREE.WebGLRenderer({ canvas: byId("canvas"), antialias: false });
 		this.renderer.autoClear = false;
+		// a picture that is seen through takes longer to put on the page
+		const paint = () => this.renderer.setClearColor(new THREE.Color(getComputedStyle(document.body).backgroundColor));
+		matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+			paint();
+			this.redraw();
+		});
+		paint();
 		this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
 		this.controls = new THREE.OrbitControls(this.camera, byId("canvas"));
 		this.controls.enableKeys = false;
@@ -108,6 +115,8 @@ class Live {
 		this.pinDots = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({ color: 0xd08000, size: 9, sizeAttenuation: false }));
 		this.pinDots.frustumCulled = false;
 		this.world.add(this.pinDots);
+		this.arrows = ["gravity", "force"].map((key) =>
+			new ForceArrow(key, arrowUnits[key] * (key === "force" ? this.intro.weight : 1), 0.5 * this.intro.size));
 		this.strains = new Float32Array(this.scene.particles);
 		this.isAimed = false;
 	}
@@ -130,9 +139,22 @@ class Live {
 			body.positions.needsUpdate = true;
 			body.rigid.forEach((mesh, index) => placeRigid(this.scene, mesh, index, body.positions.array));
 		});
+		this.foretell();
 		if (!this.isAimed) this.aim();
 		this.redraw();
 		this.socket.send("+");
+	}
+
+	// What is held is drawn where it will be at the end of the next frame, before the engines have got there: on its way to the
+	// pointer, as fast as the server lets it.
+	foretell() {
+		if (!this.pull) return;
+		const at = 3 * this.pull.particle, most = this.intro.fastest * this.intro.step;
+		for (const { positions } of this.bodies) {
+			const from = new THREE.Vector3().fromArray(positions.array, at), way = new THREE.Vector3(...this.pull.to).sub(from);
+			from.add(way.clampLength(0, most)).toArray(positions.array, at);
+			positions.needsUpdate = true;
+		}
 	}
 
 	aim() {
@@ -142,6 +164,10 @@ class Live {
 		const sphere = box.getBoundingSphere(new THREE.Sphere()), radius = Math.max(0.75 * this.intro.size, sphere.radius, 1e-3);
 		const colliders = makeColliders(this.scene, 2 * radius);
 		this.world.add(colliders);
+		this.arrows.forEach((arrow, i) => {
+			arrow.place(sphere.center.clone().add(new THREE.Vector3((i ? 1 : -1) * 1.1 * radius, 0.6 * radius, 0)));
+			arrow.show(this.intro[arrow.key]);
+		});
 		this.camera.near = radius / 100;
 		this.camera.far = radius * 100;
 		this.controls.target.copy(sphere.center).add(new THREE.Vector3(0, -0.4 * radius, 0));
@@ -177,7 +203,7 @@ class Live {
 	draw() {
 		const canvas = byId("canvas"), width = canvas.clientWidth, height = canvas.clientHeight;
 		const size = this.renderer.getSize(new THREE.Vector2());
-		if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
+		this.keepPace(width, height, size);
 		this.bodies.forEach((body, i) => this.paint(body, i));
 		const isOver = byId("layout").value === "over", all = this.bodies.map((_, i) => i);
 		const views = isOver ? [all] : all.map((i) => [i]);
@@ -187,8 +213,27 @@ class Live {
 		this.columns = columnsFor(views.length, width, height);
 		this.rows = Math.ceil(views.length / this.columns);
 		views.forEach((shown, i) => this.drawView(shown, this.boxOf(i)));
+		drawArrows(byId("arrows"), this.arrows, this.camera, views.map((_, i) => this.boxOf(i)));
 		this.label(views);
 		this.showNumbers();
+	}
+
+	// Without a graphics processor a large picture takes too long: it is drawn coarser as long as frames come slower than 30 a
+	// second, and finer again where they are quick.
+	keepPace(width, height, size) {
+		const now = performance.now(), took = now - (this.drawnAt ?? now);
+		this.drawnAt = now;
+		const before = this.coarseness ?? 1;
+		// a pause between two frames is no slow frame
+		if (took > 0 && took < 200) this.pace = 0.9 * (this.pace ?? 16) + 0.1 * took;
+		if (this.pace > 33 && this.steadyAt !== undefined && now - this.steadyAt > 500) this.coarseness = Math.max(0.5, before * 0.8);
+		if (this.pace < 20 && now - this.steadyAt > 3000) this.coarseness = Math.min(1, before * 1.25);
+		if (this.steadyAt === undefined || this.coarseness !== before) this.steadyAt = now;
+		this.coarseness ??= 1;
+		if (size.x === width && size.y === height && this.coarseness === this.drawnCoarseness) return;
+		this.drawnCoarseness = this.coarseness;
+		this.renderer.setPixelRatio(this.coarseness);
+		this.renderer.setSize(width, height, false);
 	}
 
 	boxOf(i) {
@@ -244,8 +289,18 @@ class Live {
 		byId("plots").replaceChildren(...this.plots.map((plot) => plot.figure));
 	}
 
+	// Ten times a second, and the plots as often: nobody reads faster, and the cloths have the time.
 	showNumbers() {
 		const { time, engines } = this.frame, step = 1e3 * this.intro.step;
+		if (this.plottedFrame !== this.frame.number) {
+			this.plots[0].add(time, engines.map((one) => one.sag));
+			this.plots[1].add(time, engines.map((one) => one.strain));
+			this.plots[2].add(time, engines.map((one) => one.apart));
+		}
+		this.plottedFrame = this.frame.number;
+		const now = performance.now();
+		if (this.isPlaying && now - (this.shownAt ?? 0) < 100) return;
+		this.shownAt = now;
 		byId("time").textContent = `${time.toFixed(2)} s`;
 		engines.forEach((one, i) => {
 			const cells = byId("table").rows[i].cells, ratio = one.wall > 0 ? step / one.wall : NaN;
@@ -254,11 +309,6 @@ class Live {
 			values.forEach((text, k) => (cells[k + 1].textContent = text));
 			cells[2].classList.toggle("bad", one.hasEnded || ratio < 1);
 		});
-		if (this.shownFrame === this.frame.number) return;
-		this.shownFrame = this.frame.number;
-		this.plots[0].add(time, engines.map((one) => one.sag));
-		this.plots[1].add(time, engines.map((one) => one.strain));
-		this.plots[2].add(time, engines.map((one) => one.apart));
 		for (const plot of this.plots) plot.draw();
 	}
 
@@ -270,10 +320,17 @@ class Live {
 		return make("label", {}, label, input);
 	}
 
+	setVector(key, values) {
+		this.send({ do: "set", key, value: `[${values.join(", ")}]` });
+		this.arrows.find((arrow) => arrow.key === key).show(values);
+		document.querySelectorAll(`input[data-key="${key}"]`).forEach((input, axis) => (input.value = values[axis]));
+		this.redraw();
+	}
+
 	// Three numbers, as one list.
 	vector(label, key, values) {
 		const inputs = values.map((value, axis) => make("input", { type: "number", step: "any", value, ariaLabel: `${label} ${"xyz"[axis]}` }));
-		const send = () => this.send({ do: "set", key, value: `[${inputs.map((input) => Number(input.value) || 0).join(", ")}]` });
+		const send = () => this.setVector(key, inputs.map((input) => Number(input.value) || 0));
 		for (const input of inputs) {
 			input.addEventListener("change", send);
 			input.dataset.key = key;
@@ -293,9 +350,12 @@ class Live {
 			return make("details", {}, make("summary", { textContent: engine.name }), ...rows);
 		}));
 		byId("particle").max = this.scene.cloth - 1;
+		const named = this.intro.pins.slice(0, 9).map((particle, i) => `${i + 1}: ${particle}`);
+		byId("pin-names").textContent = named.length ? `Keys lock and let go: ${named.join(", ")}` : "";
 	}
 
 	fillFields() {
+		if (this.isAimed) for (const arrow of this.arrows) arrow.show(this.intro[arrow.key]);
 		const { gravity, force, drag, stiffness, damping } = this.intro;
 		byId("forces").replaceChildren(make("legend", { textContent: "Forces" }), this.vector("Gravity, m/s²", "gravity", gravity),
 			this.vector("Force on each, N", "force", force), this.field("Drag, 1/s", "drag", drag, { min: 0 }));
@@ -325,6 +385,8 @@ class Live {
 			if (px < box.x || px >= box.x + box.width || py < box.top || py >= box.top + box.height) continue;
 			this.camera.aspect = box.width / box.height;
 			this.camera.updateProjectionMatrix();
+			const arrow = pickArrow(this.arrows, this.camera, box, px, py);
+			if (arrow) return arrow;
 			let best = null, nearest = 16;
 			const array = this.bodies[i].positions.array, point = new THREE.Vector3();
 			for (let k = 0; k < this.scene.cloth; k++) {
@@ -361,14 +423,26 @@ class Live {
 			if (!down) return;
 			down.isDrag ||= Math.hypot(event.clientX - down.from[0], event.clientY - down.from[1]) > 4;
 			if (!down.isDrag) return;
-			this.grabbed = down.particle;
-			this.say(`pulling particle ${down.particle}`);
-			this.send({ do: "drag", particle: down.particle, to: this.placeOf(event, down) });
+			const to = this.placeOf(event, down);
+			if (down.arrow) {
+				down.arrow.show(down.arrow.valueAt(to));
+				this.say(`${down.arrow.key}: ${down.arrow.value.join(", ")}`);
+			} else {
+				this.grabbed = down.particle;
+				this.say(`pulling particle ${down.particle}`);
+				this.send({ do: "drag", particle: down.particle, to });
+				this.pull = { particle: down.particle, to };
+				this.foretell();
+			}
+			this.redraw();
 		});
 		const up = () => {
 			if (!down) return;
-			if (down.isDrag) this.send({ do: "drop" });
+			if (down.arrow) {
+				if (down.isDrag) this.setVector(down.arrow.key, down.arrow.value);
+			} else if (down.isDrag) this.send({ do: "drop" });
 			else this.lockOrFree(down.particle);
+			this.pull = null;
 			down = null;
 			this.controls.enabled = true;
 		};
@@ -391,10 +465,18 @@ class Live {
 			if (event.key === " ") play();
 			else if (event.key === ".") this.send({ do: "step" });
 			else if (event.key === "r") this.send({ do: "reset" });
+			else if (this.pressPin(event.key)) return;
 			else if (this.turn(event.key)) this.redraw();
 			else return;
 			event.preventDefault();
 		});
+	}
+
+	// The pins that the scene begins with, by the keys 1 to 9.
+	pressPin(key) {
+		const particle = /^[1-9]$/.test(key) ? this.intro?.pins[Number(key) - 1] : undefined;
+		if (particle !== undefined) this.lockOrFree(particle);
+		return particle !== undefined;
 	}
 
 	turn(key) {

@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The fastest that a hand drags, sizes a second: a jump would tear what it holds.
-#define FASTEST 20
 
 static void take_pins(ck_Stage *stage) {
     const ck_Model *model = ck_live_model(stage->live);
@@ -232,7 +230,7 @@ void ck_stage_step(ck_Stage *stage) {
         const double *at = ck_trajectory_position(&ck_live_engine(stage->live, first)->shown, 0) + 3 * stage->held;
         double way[3], goal[3];
         ck_subtract(way, stage->goal, at);
-        const double far = ck_length(way), most = FASTEST * model->size * model->step;
+        const double far = ck_length(way), most = CK_STAGE_FASTEST * model->size * model->step;
         memcpy(goal, at, sizeof goal);
         ck_add_scaled(goal, far > most ? most / far : 1, way);
         const bool moves = far > 1e-6 * model->size;

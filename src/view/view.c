@@ -400,6 +400,8 @@ static char *make_intro(const ck_Live *live) {
     for (int i = 0; i < ck_live_count(live); i++)
         json_array_append_new(engines, engine_of(ck_live_engine(live, i)->engine));
     json_object_set_new(intro, "engines", engines);
+    json_object_set_new(intro, "fastest", json_real(CK_STAGE_FASTEST * model->size));
+    json_object_set_new(intro, "weight", json_real(9.81 * ck_model_free_mass(model) / fmax(1, model->particle_count)));
     add_body(intro, model);
     add_values(intro, live);
     char *text = json_dumps(intro, JSON_COMPACT);

@@ -194,6 +194,44 @@ test("a drag pulls a point, and dropping lets it swing", async () => {
 	assert.ok(apart(await place(particle), held) > 0.01);
 });
 
+test("the arrow of gravity is turned, and the cloth falls that way", async () => {
+	await order({ do: "play" });
+	const tip = await page.evaluate(() => {
+		const box = live.boxOf(0), rect = document.getElementById("canvas").getBoundingClientRect();
+		live.camera.aspect = box.width / box.height;
+		live.camera.updateProjectionMatrix();
+		const place = (point) => {
+			const { x, y } = placeInBox(point, live.camera, box);
+			return { x: rect.left + x, y: rect.top + y };
+		};
+		return { at: place(live.arrows[0].tip), foot: place(live.arrows[0].foot) };
+	});
+	await page.mouse.move(tip.at.x, tip.at.y);
+	await page.mouse.down();
+	await page.mouse.move(tip.foot.x, 2 * tip.foot.y - tip.at.y, { steps: 6 });
+	await page.mouse.up();
+	const gravity = await page.locator('input[data-key="gravity"]').evaluateAll((inputs) => inputs.map((input) => Number(input.value)));
+	assert.ok(gravity[1] > 3, gravity.join(", "));
+	const low = await place(390);
+	await frames(40);
+	assert.ok((await place(390))[1] > low[1] + 0.05, "it falls up");
+	await order({ do: "set", key: "gravity", value: "[0, -9.81, 0]" });
+	await frames(20);
+});
+
+test("keys let go of the pins and lock them again", async () => {
+	await page.locator("#canvas").focus();
+	const [first] = await page.evaluate(() => live.intro.pins), at = await place(first);
+	await page.keyboard.press("1");
+	await frames(20);
+	assert.ok(apart(await place(first), at) > 1e-3);
+	await page.keyboard.press("1");
+	await frames(2);
+	const held = await place(first);
+	await frames(10);
+	assert.ok(apart(await place(first), held) < 1e-6);
+});
+
 test("the keyboard alone plays, steps and sets", async () => {
 	await page.locator("#canvas").focus();
 	await page.keyboard.press("Space");

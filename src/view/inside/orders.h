@@ -4,6 +4,9 @@
 
 #include "live.h"
 
+// The fastest that a hand drags, sizes of the body a second: a jump would tear what it holds.
+#define CK_STAGE_FASTEST 20
+
 // A session as viewers see it.
 typedef struct ck_Stage {
     ck_Live *live;
