@@ -68,8 +68,8 @@ static inline uint64_t ck_hash(uint64_t start, const void *data, size_t bytes) {
     return start;
 }
 
-// Writes all bytes at a file's place. False where it cannot, and errno says why: a disk that is full takes what still fits
-// and says so the next time.
+// Writes all bytes at a file's place. False where it cannot, and errno says why: a disk that is full takes what still
+// fits and says so the next time.
 bool ck_file_write(int file, const void *bytes, size_t size);
 
 // Locks an open file or folder for this process and its children, or with shares for all that share it. False where

@@ -15,7 +15,8 @@ typedef struct ck_Text {
 // False when out of memory.
 bool ck_text_begin(ck_Text *text);
 
-// Closes the file. False where any of the text found no memory: then there are no bytes. Accepts one that was not begun.
+// Closes the file. False where any of the text found no memory: then there are no bytes. Accepts one that was not
+// begun.
 bool ck_text_end(ck_Text *text);
 
 #endif

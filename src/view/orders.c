@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 static void take_pins(ck_Stage *stage) {
     const ck_Model *model = ck_live_model(stage->live);
     memcpy(stage->pinned, model->pinned, sizeof *stage->pinned * (size_t)model->particle_count);
