@@ -43,12 +43,22 @@ static ck_Status take_outside(ck_Arguments *arguments, ck_Engine *engine, ck_Err
     return status;
 }
 
-// NAME=COMMAND, NAME=LIBRARY.so or LIBRARY.so.
+// NAME=ENGINE, of the table.
+static ck_Status add_copy(ck_Arguments *arguments, const char *name, const ck_Engine *of, ck_Error *error) {
+    const ck_Engine *copy;
+    ck_Status status = ck_engines_add_copy(&copy, name, of, error);
+    if (!status) add_engine(arguments, copy);
+    return status;
+}
+
+// NAME=ENGINE, NAME=COMMAND, NAME=LIBRARY.so or LIBRARY.so.
 static ck_Status add_outside(ck_Arguments *arguments, const char *text, ck_Error *error) {
     char name[64];
     ck_Engine *engine;
     const char *equals = strchr(text, '='), *rest = equals ? equals + 1 : text;
     snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - text) : 0, text);
+    const ck_Engine *of = equals ? ck_engine_find(rest) : NULL;
+    if (of) return add_copy(arguments, name, of, error);
     ck_Status status = is_library(rest) ? ck_outside_library(&engine, equals ? name : NULL, rest, error)
                                         : ck_outside_command(&engine, name, rest, false, error);
     return status ? status : take_outside(arguments, engine, error);

@@ -5,7 +5,8 @@
 #include "command.h"
 
 // Adds the engines that text names to those that are asked for: a name or pattern of those of the program and, where it
-// fits none, of the adapters beside it; NAME=COMMAND, NAME=LIBRARY.so or LIBRARY.so.
+// fits none, of the adapters beside it; NAME=ENGINE, the same under a second name; NAME=COMMAND, NAME=LIBRARY.so or
+// LIBRARY.so.
 ck_Status ck_arguments_add_engines(ck_Arguments *arguments, const char *text, ck_Error *error);
 
 // CK_BAD_INPUT, with the names that there are.

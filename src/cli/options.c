@@ -46,8 +46,10 @@ static ck_Status add_validation(ck_Arguments *arguments, const char *text, ck_Er
 static const Option table[] = {
     {"out", "DIR", 'o', CK_TAKES_OUT, TEXT, PLACE(out), .help = "write the CSVs into DIR", .is_way = true},
     {"engine", "NAME", 'e', CK_TAKES_RUNS | CK_TAKES_STUDY, OTHER, .fallback = "all", .read = ck_arguments_add_engines,
-     .help = "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
-             "--fast', or a library as ./libmine.so; may be given several times"},
+     .help =
+         "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
+         "--fast', or a library as ./libmine.so; or one under a second name, for other settings: 'fine=native-xpbd'; "
+         "may be given several times"},
     {"set", "[ENGINE.]KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
      .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
     {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,

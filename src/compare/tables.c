@@ -31,12 +31,14 @@ static void write_command(char *out, size_t size, const ck_Comparison *compariso
                           const ck_CompareOptions *options) {
     const char *engine = run->engine->name;
     const ck_Outside *outside = run->engine->outside;
+    const ck_Engine *original = ck_engine_original(run->engine);
     char path[2048];
     ck_text_shell(path, sizeof path, comparison->path);
     size_t used = outside && outside->is_recorded
                       ? (size_t)snprintf(out, size, "clothcheck score %s %s", path, outside->arguments)
                   : outside ? (size_t)snprintf(out, size, "clothcheck run %s %s", path, outside->arguments)
-                            : (size_t)snprintf(out, size, "clothcheck run %s --engine %s", path, engine);
+                            : (size_t)snprintf(out, size, "clothcheck run %s --engine %s%s%s", path, engine,
+                                               original ? "=" : "", original ? original->name : "");
     if (run->status == CK_RUN_TOO_SLOW)
         used += (size_t)snprintf(out + used, size - used, " --patience %g", options->limits.patience);
     for (int i = 0; i < options->override_count; i++) {

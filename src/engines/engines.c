@@ -9,9 +9,20 @@
 // ends with NULL
 extern const ck_Engine *const ck_engine_table[];
 
-// Those from outside the program, after the table's own.
-static const ck_Engine *added[8];
+#define MOST_NAME 40
+
+// Those from outside the program and those under a second name, after the table's own.
+static const ck_Engine *added[16];
 static int added_count;
+
+typedef struct Copy {
+    ck_Engine engine;
+    char name[MOST_NAME + 1];
+    const ck_Engine *of;
+} Copy;
+
+static Copy copies[sizeof added / sizeof *added];
+static int copy_count;
 
 static int own_count(void) {
     int count = 0;
@@ -39,15 +50,37 @@ const ck_Engine *ck_engine_find(const char *name) {
 
 ck_Status ck_engines_add(const ck_Engine *engine, ck_Error *error) {
     size_t length = strlen(engine->name);
-    if (!length || length > 40 || *engine->name == '.' || strspn(engine->name, CK_PLAIN_LETTERS) != length)
+    if (!length || length > MOST_NAME || *engine->name == '.' || strspn(engine->name, CK_PLAIN_LETTERS) != length)
         return ck_fail(error, CK_BAD_INPUT, "an engine cannot be named '%.60s': take at most 40 of " CK_PLAIN_LETTERS,
                        engine->name);
     if (!strcmp(engine->name, "truth") || !strcmp(engine->name, EVERY) || ck_engine_find(engine->name))
         return ck_fail(error, CK_BAD_INPUT, "there is an engine %s already; give yours another name", engine->name);
     if (added_count == sizeof added / sizeof *added)
-        return ck_fail(error, CK_BAD_INPUT, "at most %d engines from outside can be used at once", added_count);
+        return ck_fail(error, CK_BAD_INPUT, "at most %d engines can be added at once", added_count);
     added[added_count++] = engine;
     return CK_OK;
+}
+
+ck_Status ck_engines_add_copy(const ck_Engine **copy, const char *name, const ck_Engine *of, ck_Error *error) {
+    if (copy_count == sizeof copies / sizeof *copies)
+        return ck_fail(error, CK_BAD_INPUT, "at most %d engines can be added at once", copy_count);
+    Copy *made = &copies[copy_count];
+    *made = (Copy){.engine = *of, .of = of};
+    made->engine.name = made->name;
+    // one that is too long is refused as it stands
+    const bool fits = snprintf(made->name, sizeof made->name, "%s", name) < (int)sizeof made->name;
+    ck_Engine whole = {.name = name};
+    ck_Status status = ck_engines_add(fits ? &made->engine : &whole, error);
+    if (status) return status;
+    copy_count++;
+    *copy = &made->engine;
+    return CK_OK;
+}
+
+const ck_Engine *ck_engine_original(const ck_Engine *engine) {
+    for (int i = 0; i < copy_count; i++)
+        if (engine == &copies[i].engine) return copies[i].of;
+    return NULL;
 }
 
 const char *ck_engine_name(const void *table, int index) {
@@ -100,10 +133,12 @@ ck_Status ck_engines_check(const ck_Scene *scene, ck_Error *error) {
 
 ck_Settings ck_engine_scene_settings(const ck_Engine *engine, const ck_Scene *scene) {
     ck_Settings settings = {0};
-    // its own ones count more than those of all
-    for (int own = 0; own < 2; own++)
+    const ck_Engine *original = ck_engine_original(engine);
+    // the later of these count more
+    const char *const names[] = {EVERY, original ? original->name : engine->name, engine->name};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         for (int i = 0; i < scene->setting_count; i++) {
-            const ck_Setting *row = strcmp(scene->settings[i].engine, own ? engine->name : EVERY)
+            const ck_Setting *row = strcmp(scene->settings[i].engine, names[k])
                                         ? NULL
                                         : ck_setting_find(engine->settings, scene->settings[i].key);
             if (row) ck_settings_set(&settings, row->slot, scene->settings[i].value);

@@ -13,6 +13,13 @@ const ck_Engine *ck_engine_at(int index);
 // not plain, or there are too many.
 ck_Status ck_engines_add(const ck_Engine *engine, ck_Error *error);
 
+// Adds an engine of the table a second time, under another name, to be run at other settings beside itself: what a
+// scene sets for the one counts for the other. Errors: those of ck_engines_add.
+ck_Status ck_engines_add_copy(const ck_Engine **copy, const char *name, const ck_Engine *of, ck_Error *error);
+
+// The engine that one is a copy of; NULL: none.
+const ck_Engine *ck_engine_original(const ck_Engine *engine);
+
 // NULL where there is no such engine.
 const ck_Engine *ck_engine_find(const char *name);
 

@@ -363,8 +363,43 @@ static void test_diff(void **state) {
     fixture_assert_output("diff takes OLD and NEW");
 }
 
+// An engine under a second name runs beside itself at other settings, over those that the scene has for it; its row
+// says how to run it again.
+static void test_second_name(void **state) {
+    (void)state;
+    char line[500], *scene = fixture_file("name: swing\nrope: {particles: 3, spacing: 0.5, mass: 1}\npins: [first]\n"
+                                          "springs: {stiffness: 500}\ngravity: [0, -9.81, 0]\n"
+                                          "time: {duration: 0.5, fps: 20}\ntruth: trajectory\n"
+                                          "settings: {native-xpbd: {iterations: 3}}\n");
+    snprintf(line, sizeof line,
+             "compare %s -e native-xpbd -e coarse=native-xpbd -s native-xpbd.substeps=200 -s coarse.substeps=5 -r 0 "
+             "--out %s/second",
+             scene, fixture_directory);
+    assert_int_equal(fixture_program(line), 0);
+    char *runs = fixture_read("second/runs.csv"), *metrics = fixture_read("second/metrics.csv");
+    const char *fine = strstr(metrics, "\nswing,native-xpbd,position_rms,"),
+               *coarse = strstr(metrics, "\nswing,coarse,position_rms,");
+    assert_true(fine && coarse);
+    double errors[2];
+    assert_int_equal(sscanf(fine, "\nswing,native-xpbd,position_rms,%*[^,],%lf", &errors[0]), 1);
+    assert_int_equal(sscanf(coarse, "\nswing,coarse,position_rms,%*[^,],%lf", &errors[1]), 1);
+    // of first order in the step, which is 40 times as long
+    assert_true(errors[1] > 10 * errors[0]);
+    assert_non_null(strstr(runs, "\nswing,coarse,ok,"));
+    assert_non_null(strstr(runs, " --engine coarse=native-xpbd --set coarse.substeps=5"));
+    assert_non_null(strstr(runs, ",5,3,"));
+    snprintf(line, sizeof line, "run %s -e native-bars=native-xpbd", scene);
+    assert_int_equal(fixture_program(line), 2);
+    fixture_assert_output("there is an engine native-bars already");
+    unlink(scene);
+    free(scene);
+    free(metrics);
+    free(runs);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_second_name),
         cmocka_unit_test(test_usage),
         cmocka_unit_test(test_readme_tables),
         cmocka_unit_test(test_bad_input_writes_nothing),
