@@ -64,7 +64,7 @@ function summaryRow(scene, engines, rows) {
 	const link = element("a", { href: `#scene=${encodeURIComponent(scene)}`, textContent: scene });
 	const metric = rows.map((row) => row.metric).find((name) => name) || "", cheapest = cheapestOf(rows);
 	const cellOf = (row) => summaryCell(row, cheapest.has(row));
-	return element("tr", {}, element("th", { scope: "row" }, link), element("td", { textContent: metric }),
+	return element("tr", {}, element("th", { scope: "row" }, link, ...scenePicture(scene)), element("td", { textContent: metric }),
 		...engines.map((engine) => cellOf(rows.find((row) => row.engine === engine))));
 }
 

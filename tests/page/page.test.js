@@ -177,6 +177,22 @@ test("the summary holds the numbers of the CSVs", async () => {
 	assert.match(await page.textContent("#summary-left-out"), /seed-tecido\.$/);
 });
 
+test("each scene of the summary has its picture and its sentence", async () => {
+	await page.locator("#summary-table").scrollIntoViewIfNeeded();
+	await page.waitForFunction(() => [...document.querySelectorAll("#summary-table .picture")].every((picture) => picture.dataset.drawn));
+	const pictures = await page.locator("#summary-table tbody tr").evaluateAll((rows) => rows.map((row) => {
+		const canvas = row.querySelector(".picture"), { width, height } = canvas;
+		const pixels = canvas.getContext("2d").getImageData(0, 0, width, height).data;
+		return { inked: pixels.filter((value, i) => i % 4 === 3 && value > 0).length, sentence: row.querySelector(".sentence").textContent };
+	}));
+	assert.equal(pictures.length, 3);
+	for (const { inked, sentence } of pictures) {
+		assert.ok(inked > 10, `${inked} pixels`);
+		assert.match(sentence, /^[A-Z].*\.$/);
+	}
+	await page.evaluate(() => scrollTo(0, 0));
+});
+
 test("the summary is of whichever metric is asked for", async () => {
 	await page.selectOption("#summary-metric", "stretch_max");
 	const rows = csvRows("metrics.csv").filter((row) => row.metric === "stretch_max" && row.error !== "nan");
