@@ -60,6 +60,7 @@ macro(clothcheck_vectors name precision)
       $<$<STREQUAL:${precision},single_>:CK_SINGLE>)
     # a root sets no error number
     target_compile_options(${objects} PRIVATE ${MACHINE_${vectors}} -fno-math-errno)
+    set_target_properties(${objects} PROPERTIES VECTOR_LOOPS ON)
     if(NOT vectors STREQUAL "plain")
       set_target_properties(${objects} PROPERTIES WIDE_VECTORS ON)
     endif()
