@@ -9,7 +9,7 @@
 typedef struct ck_OutFolder {
     const char *path; // NULL: none is claimed
     int file;         // the folder, open and locked; below 0: its file system has no locks
-    bool is_made;
+    int made;         // folders of the path that were not there
 } ck_OutFolder;
 
 // Makes the folder where it is missing and claims it until ck_out_folder_leave.
@@ -18,7 +18,7 @@ typedef struct ck_OutFolder {
 // folder; CK_IO.
 ck_Status ck_out_folder_claim(ck_OutFolder *folder, const char *path, bool shares, ck_Error *error);
 
-// A folder that was made and is still empty goes. Accepts a zeroed folder.
+// Folders that were made and are still empty go. Accepts a zeroed folder.
 void ck_out_folder_leave(ck_OutFolder *folder);
 
 #endif
