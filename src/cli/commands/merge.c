@@ -71,7 +71,8 @@ static ck_Status find_scene(const ck_Command *study, char *const *parts, int cou
     for (int i = 0; i < count; i++)
         if (!ck_journal_question(parts[i], name, question, size, NULL) && is_scene(question)) return CK_OK;
     const char *place = strstr(question, CK_JOURNAL_PLACE);
-    return ck_fail(error, CK_BAD_INPUT, "%s: is not there, or not as it was when %s was asked of it",
+    return ck_fail(error, CK_BAD_INPUT,
+                   "%s: is not there, or not as it was when %s was asked of it; merge in the folder where that was",
                    place ? place + strlen(CK_JOURNAL_PLACE) : "the scene", study->name);
 }
 
