@@ -13,7 +13,7 @@
 #ifdef __SANITIZE_ADDRESS__
 #define SCENES 4
 #else
-#define SCENES 80
+#define SCENES 40
 #endif
 
 // Seconds of a run, of CPU and on the wall, and of what the parent does beside.

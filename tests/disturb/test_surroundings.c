@@ -96,7 +96,6 @@ static const struct {
     const char *name, *words;
     const char *reason; // that a command may give up for; NULL: none
 } surroundings[] = {
-    {"eight descriptors", "cd %1$s && exec >%4$s/said 2>&1 && ulimit -n 8 && exec %2$s %3$s", "Too many open files"},
     {"sixteen descriptors", "cd %1$s && exec >%4$s/said 2>&1 && ulimit -n 16 && exec %2$s %3$s", "Too many open files"},
     {"closed streams", "cd %s && exec %s %s <&- >&- 2>&- # %s", NULL},
     {"a reader that has gone", "cd %s && { %s %s 2>%s/said; true; } | true", NULL},
@@ -128,7 +127,7 @@ static void test_surroundings(void **state) {
 // At the moments that are counted.
 static void test_vanishing(void **state) {
     (void)state;
-    const int wanted = number_of("VANISHINGS", 4);
+    const int wanted = number_of("VANISHINGS", 2);
     snprintf(directory, sizeof directory, "%s/gone", fixture_directory);
     for (size_t i = 0; i < command_count; i++) {
         const Command *command = &commands[i];
