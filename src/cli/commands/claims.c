@@ -14,12 +14,16 @@ static void show_progress(const char *claim, double value) {
 
 static ck_Status write_tables(const char *out, ck_Error *error) {
     ck_Csv claims = {0}, quirks = {0};
+    char data[4000], scenes[4096];
     int failed = ck_path_make(out);
     ck_Status status = failed ? ck_fail(error, CK_IO, "%s: %s", out, strerror(failed)) : CK_OK;
+    if (!ck_path_data(data, sizeof data) && !status)
+        status = ck_fail(error, CK_IO, "%s: is not there; it must hold the origins' scenes", data);
+    snprintf(scenes, sizeof scenes, "%s/scenes", data);
     if (!status) status = ck_csv_open(&quirks, out, &ck_layouts[CK_QUIRKS], error);
     if (!status) status = ck_csv_open(&claims, out, &ck_layouts[CK_CLAIMS], error);
-    if (!status) status = ck_quirks_write(&quirks, "scenes", error);
-    if (!status) status = ck_claims_write(&claims, "scenes", show_progress, error);
+    if (!status) status = ck_quirks_write(&quirks, scenes, error);
+    if (!status) status = ck_claims_write(&claims, scenes, show_progress, error);
     ck_progress_clear();
     if (!status) status = ck_csv_close(&quirks, error);
     if (!status) status = ck_csv_close(&claims, error);
