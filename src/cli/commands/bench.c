@@ -23,6 +23,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     int failed = status ? 0 : ck_path_make(out);
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", out, strerror(failed));
     if (!status) status = ck_csv_open(&csv, out, &ck_layouts[CK_BENCH], &error);
+    ck_command_catch_signals();
     if (!status) status = ck_bench_write(&csv, &options, &error);
     ck_progress_clear();
     if (!status) status = ck_csv_close(&csv, &error);

@@ -37,6 +37,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Error error = {0};
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     const char *out = arguments.out;
+    ck_command_catch_signals();
     if (!status) status = write_tables(out, &error);
     if (!status) status = ck_machine_save(out, &error);
     if (!status) status = ck_answer_quirks(&arguments.answer, out, &error);
