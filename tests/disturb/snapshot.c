@@ -77,7 +77,8 @@ static const char *end_of(const SnapshotFile *file) {
 static bool is_whole(const SnapshotFile *file, const SnapshotFile *undisturbed) {
     const char *ending = strrchr(file->path, '.');
     if (undisturbed->is_stable) return is_same(file, undisturbed);
-    if (ending && !strcmp(ending, ".csv")) return count_lines(file) == count_lines(undisturbed);
+    if (ending && (!strcmp(ending, ".csv") || !strcmp(ending, ".axes")))
+        return count_lines(file) == count_lines(undisturbed);
     return !strcmp(end_of(file), end_of(undisturbed));
 }
 
