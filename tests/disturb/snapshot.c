@@ -51,8 +51,9 @@ static bool is_same(const SnapshotFile *one, const SnapshotFile *other) {
     return one->size == other->size && !memcmp(one->bytes, other->bytes, one->size);
 }
 
-// Memory and load, which may be alike by chance.
+// Memory, load and what is drawn of times, which may be alike by chance.
 static bool holds_measurements(const char *path) {
+    if (!strncmp(path, "charts/", 7)) return true;
     return !strcmp(path, "runs.csv") || !strcmp(path, "machine.csv") || !strcmp(path, "study.csv");
 }
 

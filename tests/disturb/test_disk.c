@@ -99,6 +99,7 @@ static void test_full_disks(void **state) {
         }
         snapshot_free(&undisturbed);
     }
+    umount(directory);
     print_message("%d disks, of which %d were too small, and %d limits\n", disks, full, held);
 }
 
