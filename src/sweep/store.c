@@ -82,8 +82,11 @@ static ck_Status read_file(ck_Store *store, int number, ck_Error *error) {
     size_t room = 0;
     struct stat about = {0};
     FILE *file = path ? fopen(path, "re") : NULL;
+    ck_Status status = path ? CK_OK : fail_memory(error);
+    // one that is gone by now has no cases
+    if (path && !file && errno != ENOENT)
+        status = ck_fail(error, ck_file_status(errno), "%s: %s", path, strerror(errno));
     free(path);
-    ck_Status status = CK_OK;
     if (file && (fstat(fileno(file), &about) || !S_ISREG(about.st_mode))) about.st_size = 0;
     for (bool is_whole = file != NULL; is_whole && !status;) {
         ck_StoreEntry entry = {.file = (uint32_t)number};
@@ -111,6 +114,8 @@ static ck_Status read_file(ck_Store *store, int number, ck_Error *error) {
                        ck_hash(CK_HASH_START, text, bytes) == check;
         if (is_whole && !status && !keep(store, &entry)) status = fail_memory(error);
     }
+    if (file && ferror(file) && !status)
+        status = ck_fail(error, ck_file_status(errno), "%s: %s", store->files[number], strerror(errno));
     if (file) fclose(file);
     free(text);
     return status;
