@@ -126,11 +126,20 @@ ck_Status ck_part_folder_open(ck_PartFolder *folder, const char *directory, cons
     *folder = (ck_PartFolder){.path = ck_path_part(directory, name), .lock = -1};
     if (!folder->path) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     ck_path_sweep(directory, name);
-    const int failed = ck_path_make(folder->path);
-    if (failed) return ck_fail(error, CK_IO, "%s: %s", folder->path, strerror(failed));
-    folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder->lock >= 0) flock(folder->lock, LOCK_EX | LOCK_NB);
-    return CK_OK;
+    for (int tries = 0; tries < 100; tries++) {
+        struct stat held, named;
+        const int failed = ck_path_make(folder->path);
+        if (failed) return ck_fail(error, CK_IO, "%s: %s", folder->path, strerror(failed));
+        folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        // one that was swept before it was locked is nobody's
+        const bool is_held = folder->lock >= 0 && !flock(folder->lock, LOCK_EX | LOCK_NB);
+        const bool is_swept = fstat(folder->lock, &held) || stat(folder->path, &named) || held.st_ino != named.st_ino;
+        // where a file system has no locks nobody sweeps
+        if (!is_swept && (is_held || errno != EWOULDBLOCK)) return CK_OK;
+        if (folder->lock >= 0) close(folder->lock);
+        folder->lock = -1;
+    }
+    return ck_fail(error, CK_IO, "%s: %s", folder->path, strerror(EBUSY));
 }
 
 void ck_part_folder_close(ck_PartFolder *folder) {
