@@ -4,6 +4,7 @@
 // the body is stepped by the same calls that the world would make.
 #include "bullet_contact.hpp"
 #include "bullet_drive.hpp"
+#include "bullet_landing.hpp"
 #include "collider.h"
 #include "engine.h"
 #include "sweep_order.h"
@@ -54,16 +55,6 @@ struct Surroundings {
     World world{&dispatcher, &broadphase, &constraint_solver, &configuration, &solver};
 };
 
-// What is left to do for a node in contact once links and contacts are solved, which leaves it without normal motion.
-struct Landing {
-    btSoftBody::Node *node;
-    btVector3 normal;
-    btVector3 carried; // m/s of the collider
-    const btCollisionObject *object;
-    double shift, leaving; // m and m/s along the normal
-    double incoming;       // m/s against it
-};
-
 // Without colliders there are no surroundings.
 struct Classic {
     btSoftBodyWorldInfo info;
@@ -73,12 +64,11 @@ struct Classic {
     bool corrects;    // to Hooke's law: springs, whose share is not the user's own
     uint32_t substep; // since the start
     std::unique_ptr<ck_BulletOuter> outer;
-    uint32_t apart;                         // substeps from one damping force to the next
-    std::vector<btScalar> of_one, least;    // of each link of the table: (w_a + w_b)/κ, and κ
-    std::vector<int> slot;                  // where its m_c0 is, in numbers from the first link's
-    btVector3 field_force;                  // N on each node
-    std::vector<Landing> landings;          // of this substep
-    std::vector<std::vector<int>> links_of; // of each node; empty without colliders
+    uint32_t apart;                      // substeps from one damping force to the next
+    std::vector<btScalar> of_one, least; // of each link of the table: (w_a + w_b)/κ, and κ
+    std::vector<int> slot;               // where its m_c0 is, in numbers from the first link's
+    btVector3 field_force;               // N on each node
+    ck_BulletLandings landings;          // of this substep
 
     ~Classic() {
         if (!around) return;
@@ -170,93 +160,14 @@ void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *us
                        ck_settings_has(used, CK_OWN + OWN_DAMPING) ? "as set" : "1 - 1/(1 + drag*dt)", CK_APPROXIMATE});
 }
 
-// Share of a depth that is pushed out in a step: without speed, so that nothing bounces by it.
-const double push_share = 0.2;
-
-// What a node does after meeting the surface from a gap, at way_in m in this step: rebounds, goes down to the surface,
-// or slowly out of it.
-Landing land(const ck_Collider &collider, double gap, double way_in, double pull, double dt) {
-    Landing landing = {};
-    landing.incoming = way_in / dt;
-    if (way_in > 2 * std::fabs(pull) * dt * dt && collider.restitution > 0) {
-        landing.leaving = ck_collider_rebound(collider.restitution, -gap, way_in / dt - pull * dt, pull, dt);
-        landing.shift = dt * landing.leaving;
-    } else {
-        landing.shift = gap >= 0 ? -gap : push_share * -gap;
-    }
-    return landing;
-}
-
-// N, of the springs on a node at the start of the substep; rigid bars have none that is known.
-btVector3 tension_of(const Classic &state, int index) {
-    const ck_BulletBody &body = state.body;
-    btVector3 tension(0, 0, 0);
-    for (int link : state.links_of[index]) {
-        const btSoftBody::Link &one = body.soft->m_links[link];
-        const ck_Spring &spring = *body.spring[link];
-        const btSoftBody::Node &node = body.soft->m_nodes[index];
-        const btSoftBody::Node &other = one.m_n[0] == &node ? *one.m_n[1] : *one.m_n[0];
-        btVector3 d = other.m_q - node.m_q;
-        double length = d.length();
-        if (length > 0 && std::isfinite(spring.stiffness))
-            tension += d * (spring.stiffness * (length - spring.rest) / length);
-    }
-    return tension;
-}
-
-// After detection, before links and contacts are solved: Coulomb's cone in place of a share of the speed, and nothing
-// of Bullet's hardness, which would answer to what links do to the node. Bullet then removes n·way + (1 − c3)·slip.
 void edit_contacts(btDynamicsWorld *world, btScalar dt) {
     Classic &state = *static_cast<Classic *>(world->getWorldUserInfo());
-    const ck_BulletBody &body = state.body;
-    state.landings.clear();
-    for (int i = 0; i < body.soft->m_rcontacts.size(); i++) {
-        btSoftBody::RContact &contact = body.soft->m_rcontacts[i];
-        const ck_Collider &collider = state.around->colliders.at_start(contact.m_cti.m_colObj);
-        const btSoftBody::Node &node = *contact.m_node;
-        const btVector3 carried = ck_BulletColliders::speed(contact.m_cti.m_colObj, node.m_q);
-        // Bullet's normals are slopes of a grid, off by a hundredth on a ball whose radius is sixty of its voxels
-        double out[3], gap = ck_bullet_gap(collider, node.m_q, out);
-        const btVector3 normal(out[0], out[1], out[2]);
-        contact.m_cti.m_normal = normal;
-        auto index = contact.m_node - &body.soft->m_nodes[0];
-        btVector3 way = node.m_x - node.m_q - carried * dt;
-        // what links will add, by their tension at the start of the substep: it presses and pulls along, too
-        btVector3 foreseen = way + tension_of(state, static_cast<int>(index)) * (node.m_im * dt * dt);
-        double way_in = -way.dot(normal), press = -foreseen.dot(normal);
-        double slip = (foreseen + normal * press).length();
-        double pull = -ck_bullet_field(body, body.particle_of_node[index]).dot(normal);
-        Landing landing = land(collider, gap, way_in, pull, dt);
-        landing.node = contact.m_node;
-        landing.normal = normal;
-        landing.carried = carried;
-        landing.object = contact.m_cti.m_colObj;
-        state.landings.push_back(landing);
-        double push = std::fmax(0, press) + dt * landing.leaving;
-        contact.m_c3 = slip > 0 ? 1 - std::fmin(1, collider.friction * push / slip) : 0;
-        contact.m_c4 = 0;
-    }
-}
-
-// Restitution, which Bullet lacks, and the way to the surface.
-void finish_landings(Classic &state) {
-    for (const Landing &landing : state.landings) {
-        btSoftBody::Node &node = *landing.node;
-        // links may have pulled it off
-        if ((node.m_v - landing.carried).dot(landing.normal) > 1e-6 * landing.incoming) continue;
-        node.m_x += landing.normal * landing.shift;
-        node.m_v += landing.normal * landing.leaving;
-        if (landing.leaving > 0)
-            state.around->colliders.strike(landing.object, landing.normal * (-landing.leaving / node.m_im), node.m_x);
-    }
+    state.landings.edit_contacts(state.body, state.around->colliders, dt);
 }
 
 void surround(Classic &state) {
     state.around = std::make_unique<Surroundings>();
-    state.links_of.resize(state.body.soft->m_nodes.size());
-    for (int i = 0; i < state.body.soft->m_links.size(); i++)
-        for (const btSoftBody::Node *node : state.body.soft->m_links[i].m_n)
-            state.links_of[node - &state.body.soft->m_nodes[0]].push_back(i);
+    state.landings.prepare(state.body);
     World &world = state.around->world;
     world.setGravity(state.info.m_gravity);
     state.info.m_broadphase = &state.around->broadphase;
@@ -357,7 +268,7 @@ void step_once(Classic &state, double end) {
         state.around->colliders.rigid.push();
         ck_bullet_check_reach(state.around->world, soft, state.body.dt);
         state.around->world.step_once(state.body.dt);
-        finish_landings(state);
+        state.landings.finish(state.around->colliders);
         return;
     }
     soft.predictMotion(state.body.dt);
