@@ -3,9 +3,9 @@
 #include "hinges.h"
 #include "ode_contact.h"
 #include "ode_rigid.h"
+#include "ode_translation.h"
 #include "path.h"
 #include "scaled_model.h"
-#include "shape.h"
 #include "time_scale.h"
 #include "vector.h"
 #include "wind.h"
@@ -18,6 +18,8 @@
 #define DIRECT_MAX_ROWS 1500
 // Beyond this speed, in sizes of the body per second, ODE's own assertions would abort the process soon.
 #define MAX_SPEED 1e6
+// Of contacts, as the least of bars: dWorldStep aborts on redundant constraints without.
+#define CONTACT_SOFTNESS 5e-13
 
 typedef struct OdeWorld {
     ck_ScaledModel scaled;
@@ -35,33 +37,11 @@ typedef struct OdeWorld {
     ck_Settings used;
 } OdeWorld;
 
-// Its own settings, by their numbers.
-enum { OWN_ERP, OWN_CFM };
-
 // dInitODE2 and dCloseODE bracket all worlds of the process.
 static int world_count;
 
 static const char *version(void) {
     return dGetConfiguration() ? CK_ODE_VERSION " double" : "";
-}
-
-// A spring as ODE knows it: the joint pushes with k(L − l) − (h·k + c)·l̇ along the direction at the start of the step.
-static double error_reduction(const ck_Spring *spring, double h, const ck_Settings *used) {
-    if (ck_settings_has(used, CK_OWN + OWN_ERP)) return used->own[OWN_ERP];
-    return isinf(spring->stiffness) ? 0.8 : h * spring->stiffness / (h * spring->stiffness + spring->damping);
-}
-
-// A rigid bar keeps a little softness, as a share of what its ends' masses make of a force: dWorldStep aborts on
-// redundant constraints without.
-#define BAR_SOFTNESS 2.5e-10
-#define CONTACT_SOFTNESS 5e-13
-
-// In the model's units; kg: the unit of mass of a scaled model.
-static double constraint_force_mixing(const ck_Model *model, const ck_Spring *spring, double h, const ck_Settings *used,
-                                      double kg) {
-    if (ck_settings_has(used, CK_OWN + OWN_CFM)) return used->own[OWN_CFM] * kg;
-    double weight = ck_model_inverse_mass(model, spring->a) + ck_model_inverse_mass(model, spring->b);
-    return isinf(spring->stiffness) ? BAR_SOFTNESS * weight : 1 / (h * spring->stiffness + spring->damping);
 }
 
 // With contact that may be on every particle, of three rows each with friction.
@@ -72,82 +52,6 @@ static int row_count(const ck_Model *model) {
     for (int i = 0; i < model->spring_count; i++)
         rows += !(model->pinned[model->springs[i].a] && model->pinned[model->springs[i].b]);
     return rows;
-}
-
-static void translate_springs(const ck_Model *model, double h, const ck_Settings *used, ck_Ledger *ledger,
-                              ck_Match match) {
-    bool has_cfm = ck_settings_has(used, CK_OWN + OWN_CFM), has_erp = ck_settings_has(used, CK_OWN + OWN_ERP);
-    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
-        if (!spring) continue;
-        bool rigid = isinf(spring->stiffness);
-        ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamCFM",
-                                             constraint_force_mixing(model, spring, h, used, 1),
-                                             has_cfm ? "as set"
-                                             : rigid ? "2.5e-10*(wa + wb): softest that is safe"
-                                                     : "1/(h*k + c)",
-                                             rigid || has_cfm ? CK_APPROXIMATE : match});
-        ck_ledger_add(ledger, (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "dParamERP",
-                                             error_reduction(spring, h, used),
-                                             has_erp ? "as set"
-                                             : rigid ? "0.8 of the error per step"
-                                                     : "h*k/(h*k + c)",
-                                             rigid || has_erp ? CK_APPROXIMATE : match});
-    }
-    if (model->terms & CK_TERM_DAMPING)
-        ck_ledger_add(ledger,
-                      (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "dParamERP, dParamCFM",
-                                     model->springs[0].damping, "in both of the above", match});
-}
-
-static void translate_contact(const ck_Model *model, ck_Ledger *ledger) {
-    ck_ledger_add_colliders(
-        ledger, model,
-        (ck_LedgerRow){"restitution", 0, "1", "motionN", 0,
-                       "e*v_n at the surface, in the step after the impact; rests below 2*g*h", CK_APPROXIMATE},
-        (ck_LedgerRow){"friction", 0, "1", "mu", 0, "dContactApprox1, fdir1 along the slip: a cone", CK_APPROXIMATE});
-}
-
-// Time step: h ≤ √(m·L/T) for the spring across its line, which ODE steps explicitly, with the whole load for T, which
-// is the limit itself for a rope, so that half of it is taken there; at most 1/120 s, 1/240 s where there is contact,
-// and a tenth of drag's time. For QuickStep also k·h²/m ≤ 5 (k·h²·W ≤ 10), where 50 iterations leave 1e-9 of a spring's
-// error; ≤ 2 where there is contact, with whose friction it converges more slowly: a cloth on a ball shakes at 2.2 and
-// lies still at 1.5.
-static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger,
-                      bool quick) {
-    double across = (ck_shape_is_chain(model) ? 0.5 : 1) * ck_stability_transverse_time(model);
-    double limit =
-        fmin(fmin(model->collider_count ? 1.0 / 240 : 1.0 / 120, across), ck_stability_drag_time(model, 0.1));
-    double rate = model->terms & CK_TERM_RIGID ? 0 : ck_stability_stiffness_rate(model);
-    if (quick && rate > 0) limit = fmin(limit, sqrt((model->collider_count ? 4 : 10) / rate));
-    limit = fmin(limit, ck_stability_bending_time(model));
-    *used = (ck_Settings){.substeps = wanted->substeps ? wanted->substeps : ck_stability_substeps(model, limit)};
-    ck_settings_take_own(used, wanted);
-    if (quick) used->iterations = wanted->iterations ? wanted->iterations : 50;
-    if (quick) used->relaxation = wanted->relaxation > 0 ? wanted->relaxation : 1.3;
-    double h = model->step / used->substeps;
-    ck_scaled_model_ledger(ledger, model);
-    ck_ledger_add(ledger, (ck_LedgerRow){"time step", model->step, "s", "h", h, "step / substeps", CK_EXACT});
-    ck_ledger_add_masses(
-        ledger, model,
-        (ck_LedgerRow){
-            .unit = "kg", .native_parameter = "dMass", .formula = "m; kinematic where pinned", .match = CK_EXACT},
-        false);
-    if (model->terms & CK_TERM_GRAVITY)
-        ck_ledger_add(ledger, (ck_LedgerRow){"gravity", ck_length(model->gravity), "m/s2", "dWorldSetGravity",
-                                             ck_length(model->gravity), "g", CK_EXACT});
-    if (model->terms & CK_TERM_FORCE)
-        ck_ledger_add(ledger, (ck_LedgerRow){"force", ck_length(model->force), "N", "dBodyAddForce",
-                                             ck_length(model->force), "F before each step", CK_EXACT});
-    if (model->terms & CK_TERM_DRAG)
-        ck_ledger_add(ledger, (ck_LedgerRow){"drag", model->drag, "1/s", "dBodySetLinearDamping", model->drag * h,
-                                             "h*drag, threshold 0: first order", CK_APPROXIMATE});
-    // QuickStep's iterations leave a rest of each spring's error; the direct solver leaves none
-    translate_springs(model, h, used, ledger, quick ? CK_APPROXIMATE : CK_EXACT);
-    ck_ledger_add_wind(ledger, model, "dBodyAddForce", "by face, before each step", CK_APPROXIMATE);
-    ck_ledger_add_bending(ledger, model, "dBodyAddForce", "each hinge's force before each step: explicit",
-                          CK_APPROXIMATE);
-    translate_contact(model, ledger);
 }
 
 static void destroy(void *state) {
@@ -183,9 +87,9 @@ static void add_bodies(OdeWorld *ode) {
 }
 
 static void set_joint(const OdeWorld *ode, dJointID joint, const ck_Spring *spring) {
-    dJointSetDBallParam(joint, dParamERP, error_reduction(spring, ode->dt, &ode->used));
+    dJointSetDBallParam(joint, dParamERP, ck_ode_error_reduction(spring, ode->dt, &ode->used));
     dJointSetDBallParam(joint, dParamCFM,
-                        constraint_force_mixing(ode->model, spring, ode->dt, &ode->used, ode->scaled.mass));
+                        ck_ode_constraint_force_mixing(ode->model, spring, ode->dt, &ode->used, ode->scaled.mass));
 }
 
 static void add_joint(OdeWorld *ode, const ck_Spring *spring) {
@@ -247,13 +151,13 @@ static ck_Status build(void **state, const ck_Model *scene, const ck_Settings *u
 
 static ck_Status create_quick(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                               ck_Ledger *ledger, ck_Error *error) {
-    translate(model, wanted, used, ledger, true);
+    ck_ode_translate(model, wanted, used, ledger, true);
     return build(state, model, used, true, error);
 }
 
 static ck_Status create_direct(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                                ck_Ledger *ledger, ck_Error *error) {
-    translate(model, wanted, used, ledger, false);
+    ck_ode_translate(model, wanted, used, ledger, false);
     int rows = row_count(model);
     if (rows > DIRECT_MAX_ROWS)
         return ck_fail(
@@ -374,10 +278,10 @@ static ck_Status code(ck_Code *code, const ck_ScaledModel *scaled, const ck_Sett
     ck_code_number(code, "push_speed", ck_ode_push_speed(model));
     ck_code_number(code, "body_radius", 0.5 * model->spacing);
     ck_code_number(code, "sor", used->relaxation);
-    ck_code_number(code, "erp_set", used->own[OWN_ERP]);
-    ck_code_number(code, "cfm_set", used->own[OWN_CFM] * scaled->mass);
-    ck_code_part(code, "erp", ck_settings_has(used, CK_OWN + OWN_ERP));
-    ck_code_part(code, "cfm", ck_settings_has(used, CK_OWN + OWN_CFM));
+    ck_code_number(code, "erp_set", used->own[CK_ODE_ERP]);
+    ck_code_number(code, "cfm_set", used->own[CK_ODE_CFM] * scaled->mass);
+    ck_code_part(code, "erp", ck_settings_has(used, CK_OWN + CK_ODE_ERP));
+    ck_code_part(code, "cfm", ck_settings_has(used, CK_OWN + CK_ODE_CFM));
     ck_code_part(code, "quick", is_quick);
     return CK_OK;
 }
@@ -423,7 +327,7 @@ static const ck_Setting quick_settings[] = {
      .help = "dWorldSetQuickStepW: over-relaxation of a sweep",
      .also = "relaxation"},
     {.name = "erp",
-     .slot = CK_OWN + OWN_ERP,
+     .slot = CK_OWN + CK_ODE_ERP,
      .least = 0,
      .most = 1,
      .unit = "1",
@@ -431,7 +335,7 @@ static const ck_Setting quick_settings[] = {
      .help = "dParamERP of every spring's joint",
      .leaves_theory = true},
     {.name = "cfm",
-     .slot = CK_OWN + OWN_CFM,
+     .slot = CK_OWN + CK_ODE_CFM,
      .least = 0,
      .most = 1e6,
      .unit = "1/kg",
@@ -451,7 +355,7 @@ static const ck_Setting direct_settings[] = {
      .rule = "tension across springs, drag, at most 1/120 s",
      .help = "steps a frame"},
     {.name = "erp",
-     .slot = CK_OWN + OWN_ERP,
+     .slot = CK_OWN + CK_ODE_ERP,
      .least = 0,
      .most = 1,
      .unit = "1",
@@ -459,7 +363,7 @@ static const ck_Setting direct_settings[] = {
      .help = "dParamERP of every spring's joint",
      .leaves_theory = true},
     {.name = "cfm",
-     .slot = CK_OWN + OWN_CFM,
+     .slot = CK_OWN + CK_ODE_CFM,
      .least = 0,
      .most = 1e6,
      .unit = "1/kg",
