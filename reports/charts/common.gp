@@ -1,7 +1,13 @@
 # What all charts share. 'looks.gp' before it says which engines there are, and how each looks: engines, place(name).
-# In: data, the chart's CSV; title. Out: present, the engines in its first column; log_axes, those with a scale of
-# logarithms, which a script says; it says 'none' where it draws several panels or no numbers.
+# In: data, the chart's CSV; title; axes, a file for axes.gp, which each script with panels of its own loads after each, or
+# ''. Out: present, the engines in its first column. A script says in log_axes which axes have a scale of logarithms, and
+# in has_panels whether it has several, or none of numbers.
 log_axes = ''
+has_panels = 0
+if (axes ne '') {
+	set print axes
+	unset print
+}
 set datafile separator comma
 # a row of another engine does not break the line of this one
 set datafile missing NaN

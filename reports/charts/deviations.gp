@@ -21,4 +21,4 @@ plot data using (place_in(present, strcol(1))):(place_in(present, strcol(2))):(0
 		with boxxyerror fillcolor palette, \
 	data using (place_in(present, strcol(1))):(place_in(present, strcol(2))):(sprintf('%.0e', $3)):($3 > 0.02 ? 0xffffff : 0x000000) skip 1 \
 		with labels font ',9' textcolor rgb variable
-log_axes = 'none'
+has_panels = 1

@@ -23,6 +23,8 @@ set format xy '10^{%L}'
 set xlabel 'CPU time for the scene, s'
 set ylabel 'error'
 unset title
+has_panels = 1
+log_axes = 'xy'
 set multiplot layout rows, columns title title noenhanced
 set key outside below horizontal samplen 1.5 font ',9'
 do for [engine in present] {
@@ -32,6 +34,6 @@ do for [engine in present] {
 	plot for [level in levels] data using (only(engine, strcol(2) eq level ? $3 : NaN)):4 skip 1 smooth unique \
 		with linespoints linecolor '#204060' dashtype place_in(levels, level) pointtype 3 + place_in(levels, level) pointsize 0.8 \
 		title (place_in(own, level) ? level.(level eq '1' ? ' iteration' : ' iterations') : '')
+	load sources.'/axes.gp'
 }
 unset multiplot
-log_axes = 'none'

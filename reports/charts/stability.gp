@@ -12,7 +12,8 @@ stats data using (found = add(found, strcol(4)), $2) skip 1 nooutput
 shortest = STATS_min/2
 set xrange [shortest:STATS_max*2]
 # rows of one stiffness at several iterations stand above each other
-lifted(stiffness, iterations) = stiffness*(iterations > 0 ? 1.8 : 1)
+lift = 1.8
+shown(i, has_iterations) = strcol(4) eq word(states, i) && ($6 > 0) == has_iterations
 stats data using 3 skip 1 nooutput
 set yrange [STATS_min/3:STATS_max*5]
 set logscale xy
@@ -20,15 +21,24 @@ set format xy '10^{%L}'
 set xlabel 'time step, s'
 set ylabel "stiffness / scene's"
 unset title
+has_panels = 1
+log_axes = 'xy'
 set multiplot layout rows, columns title title noenhanced margins 0.07, 0.98, 0.16, 0.94 spacing 0.08, 0.55/(rows + 2)
 unset key
 do for [engine in present] {
 	set title engine offset 0, -0.5 noenhanced
-	plot for [i = 1:words(states)] data using (only(engine, strcol(4) eq word(states, i) ? $2 : NaN)):(lifted($3, $6)) skip 1 \
-			with points pointtype int(word(marks, i)) pointsize 0.8 linecolor rgb word(shades, i), \
-		data using (only(engine, $5)):3 skip 1 smooth unique with lines linecolor '#000000' linewidth 2 dashtype 2, \
-		data using (only(engine, strcol(4) eq 'critical' ? $2 : NaN)):3 skip 1 with points pointtype 3 pointsize 1.6 linecolor '#000000', \
-		data using (only(engine, $7 > shortest ? $7 : NaN)):3 skip 1 with lines linecolor '#aa0000' linewidth 2 dashtype 3
+	plot for [i = 1:words(states)] data using (only(engine, shown(i, 0) ? $2 : NaN)):3 skip 1 \
+			with points pointtype int(word(marks, i)) pointsize 0.8 linecolor rgb word(shades, i) title word(states, i) noenhanced, \
+		for [i = 1:words(states)] data using (only(engine, shown(i, 1) ? $2 : NaN)):(lift*$3) skip 1 \
+			with points pointtype int(word(marks, i)) pointsize 0.8 linecolor rgb word(shades, i) \
+			title word(states, i).sprintf(' of more iterations, drawn %g times higher', lift) noenhanced, \
+		data using (only(engine, $5)):3 skip 1 smooth unique with lines linecolor '#000000' linewidth 2 dashtype 2 \
+			title 'limit by theory', \
+		data using (only(engine, strcol(4) eq 'critical' ? $2 : NaN)):3 skip 1 with points pointtype 3 pointsize 1.6 linecolor '#000000' \
+			title 'critical step, bisected', \
+		data using (only(engine, $7 > shortest ? $7 : NaN)):3 skip 1 with lines linecolor '#aa0000' linewidth 2 dashtype 3 \
+			title 'a step falls by the spacing of numbers'
+	load sources.'/axes.gp'
 }
 # the key, below all panels
 unset xlabel
@@ -51,4 +61,3 @@ plot for [i = 1:words(states)] (strstrt(found.' ', ' '.word(states, i).' ') ? 2 
 	2 with points pointtype 3 linecolor '#000000' title 'critical step, bisected', \
 	2 with lines linecolor '#aa0000' linewidth 2 dashtype 3 title 'a step falls by the spacing of numbers'
 unset multiplot
-log_axes = 'none'

@@ -27,4 +27,4 @@ plot for [i = 1:words(kinds)] data using ($10 == int(word(kinds, i)) ? column_of
 		with labels font ',8' textcolor rgb variable noenhanced notitle, \
 	data using ($11 == 1 ? column_of(strcol(2)) - 0.4 : NaN):(row_of(strcol(1))) skip 1 with points pointtype 3 pointsize 0.9 \
 		linecolor '#000000' linewidth 2 title 'cheapest within 1 %'
-log_axes = 'none'
+has_panels = 1

@@ -155,6 +155,7 @@ async function showAnswer() {
 	document.getElementById("answer-table").replaceChildren(csvTable(
 		["engine", "within", "error", "ms CPU per s", "ms a 60 Hz frame", "times the cheapest", "settings", "measured in", "command"], rows,
 		"Each engine's cheapest settings from which on finer steps stay within that error, of those that were measured; for the others, the nearest they came. The command prints a program with these settings"));
+	await showOwnNames(scene, [...best.within, ...best.beyond]);
 	await showRefusals(scene, facts);
 }
 

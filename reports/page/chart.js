@@ -4,9 +4,13 @@
 const svgSpace = "http://www.w3.org/2000/svg";
 let chartsMade = 0;
 
-// {x, y}: {low, high, from, to, isLog}, from and to in the drawing's units; null where there is no such file.
+// Of each panel {x, y}: {low, high, from, to, isLog}, from and to in the drawing's units; none where there is no such file.
 function parseAxes(text) {
-	const numbers = text === null ? [] : text.trim().split(/\s+/).map(Number);
+	return (text || "").trim().split("\n").map(parsePanel).filter((panel) => panel);
+}
+
+function parsePanel(line) {
+	const numbers = line.trim().split(/\s+/).map(Number);
 	if (numbers.length !== 10 || numbers.some(Number.isNaN)) return null;
 	const [xLow, xHigh, xFrom, xTo, xLog, yLow, yHigh, yFrom, yTo, yLog] = numbers;
 	return { x: { low: xLow, high: xHigh, from: xFrom, to: xTo, isLog: xLog > 0 },
@@ -39,10 +43,16 @@ function chartDrawing(text, title) {
 	return svg;
 }
 
+// The numbers of a place in the panel that it is in: [x, y]; null beside all.
+function numbersAt({ x, y }, panels) {
+	const all = panels.map((panel) => [axisValue(panel.x, x), axisValue(panel.y, y)]);
+	return all.find((numbers) => !numbers.some(Number.isNaN)) || null;
+}
+
 // The series of a drawing that have a name: {name, group, key, points}, points where the axes are, and beside them only
 // the sample in the key.
-function chartSeries(svg, axes) {
-	const isInside = ({ x, y }) => !axes || (!Number.isNaN(axisValue(axes.x, x)) && !Number.isNaN(axisValue(axes.y, y)));
+function chartSeries(svg, panels) {
+	const isInside = (point) => !panels.length || numbersAt(point, panels);
 	return [...svg.querySelectorAll("g[id*=gnuplot_plot_]")].map((group) => {
 		const title = group.querySelector(":scope > title"), name = title ? title.textContent : "";
 		if (title) title.remove();
@@ -51,8 +61,8 @@ function chartSeries(svg, axes) {
 	}).filter((series) => series.name && series.name !== "Gnuplot");
 }
 
-// A click on a name in the key, or a key on it, takes the series away and back.
-function makeKey(series) {
+// A click on a name in the key, or a key on it, takes the series away and back, in all panels.
+function makeKey(series, all) {
 	if (!series.key) return;
 	const box = series.key.parentElement;
 	box.setAttribute("tabindex", "0");
@@ -60,9 +70,12 @@ function makeKey(series) {
 	box.setAttribute("aria-pressed", "true");
 	box.setAttribute("aria-label", `show ${series.name}`);
 	const turn = () => {
-		series.isHidden = !series.isHidden;
-		box.setAttribute("aria-pressed", String(!series.isHidden));
-		series.group.classList.toggle("is-hidden", series.isHidden);
+		const isHidden = !series.isHidden;
+		box.setAttribute("aria-pressed", String(!isHidden));
+		for (const one of all.filter((other) => other.name === series.name)) {
+			one.isHidden = isHidden;
+			one.group.classList.toggle("is-hidden", isHidden);
+		}
 	};
 	box.classList.add("chart-key");
 	box.addEventListener("click", turn);
@@ -94,12 +107,12 @@ function nearestPoint(all, place) {
 	return nearest;
 }
 
-function pointText({ series, point }, axes) {
-	const x = axes ? axisValue(axes.x, point.x) : NaN, y = axes ? axisValue(axes.y, point.y) : NaN;
-	return Number.isNaN(x) || Number.isNaN(y) ? series.name : `${series.name}: ${y.toPrecision(3)} at ${x.toPrecision(3)}`;
+function pointText({ series, point }, panels) {
+	const numbers = numbersAt(point, panels);
+	return numbers ? `${series.name}: ${numbers[1].toPrecision(3)} at ${numbers[0].toPrecision(3)}` : series.name;
 }
 
-function makePointing(svg, all, axes, tip) {
+function makePointing(svg, all, panels, tip) {
 	const mark = document.createElementNS(svgSpace, "circle");
 	mark.setAttribute("r", "7");
 	mark.setAttribute("class", "chart-mark");
@@ -108,7 +121,7 @@ function makePointing(svg, all, axes, tip) {
 		const found = nearestPoint(all, chartPlace(svg, event));
 		mark.style.display = found ? "" : "none";
 		tip.hidden = !found;
-		tip.textContent = found ? pointText(found, axes) : "";
+		tip.textContent = found ? pointText(found, panels) : "";
 		if (!found) return;
 		mark.setAttribute("cx", found.point.x);
 		mark.setAttribute("cy", found.point.y);
@@ -147,10 +160,10 @@ function makeZoom(svg) {
 }
 
 async function chartElement(name, title) {
-	const svg = chartDrawing(await fileText(name + ".svg"), title), axes = parseAxes(await fileText(name + ".axes"));
-	const all = chartSeries(svg, axes), tip = element("output", { className: "chart-tip", hidden: true });
-	all.forEach(makeKey);
-	makePointing(svg, all, axes, tip);
+	const svg = chartDrawing(await fileText(name + ".svg"), title), panels = parseAxes(await fileText(name + ".axes"));
+	const all = chartSeries(svg, panels), tip = element("output", { className: "chart-tip", hidden: true });
+	all.forEach((series) => makeKey(series, all));
+	makePointing(svg, all, panels, tip);
 	makeZoom(svg);
 	return element("div", { className: "chart" }, svg, tip);
 }

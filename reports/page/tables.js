@@ -32,13 +32,17 @@ function engineName(name) {
 
 // Text that is meant to be used elsewhere, with a button that takes it there.
 function copyable(text) {
-	const button = element("button", { type: "button", className: "copy", textContent: "copy", ariaLabel: `copy ${text}` });
+	return [element("code", { textContent: text }), " ", copyButton(text, `copy ${text}`)];
+}
+
+function copyButton(text, ariaLabel) {
+	const button = element("button", { type: "button", className: "copy", textContent: "copy", ariaLabel });
 	button.addEventListener("click", async () => {
 		await navigator.clipboard.writeText(text);
 		button.textContent = "copied";
 		setTimeout(() => button.textContent = "copy", 1500);
 	});
-	return [element("code", { textContent: text }), " ", button];
+	return button;
 }
 
 function cell(column, text) {

@@ -44,7 +44,7 @@ class Live {
 	hear(message) {
 		if (message.kind === "intro") this.begin(message);
 		else if (message.kind === "error") this.say(message.text, true);
-		else if (message.kind === "saved") this.say(`saved as ${message.text}: clothcheck compare ${message.text} runs it again`);
+		else if (message.kind === "saved") this.say(`saved; this does the same again: ${message.text}`);
 		else if (message.kind === "said") this.said(message.text);
 		else if (message.kind === "ended") {
 			this.ended.set(message.engine, message);
@@ -77,6 +77,7 @@ class Live {
 		this.frame = null;
 		if (isNew) this.startDrawing();
 		this.build();
+		byId("rate").value = short(1 / intro.step);
 		this.makeFields();
 		this.makeTable();
 		this.say("click a point to lock it or let it go, drag it to pull");
@@ -460,6 +461,7 @@ class Live {
 		press("lock", () => !this.pins.has(Number(byId("particle").value)) && this.lockOrFree(Number(byId("particle").value)));
 		press("free", () => this.pins.has(Number(byId("particle").value)) && this.lockOrFree(Number(byId("particle").value)));
 		byId("pace").addEventListener("change", () => this.send({ do: "pace", times: Number(byId("pace").value) }));
+		byId("rate").addEventListener("change", () => this.send({ do: "rate", rate: Number(byId("rate").value) }));
 		document.addEventListener("keydown", (event) => {
 			if (/INPUT|SELECT|BUTTON|SUMMARY/.test(event.target.tagName)) return;
 			if (event.key === " ") play();

@@ -150,7 +150,7 @@ static const Option table[] = {
     {"fps", "N", 0, CK_TAKES_FILM, COUNT, PLACE(film_fps), 1, 120, .fallback = "30", .help = "frames a second"},
     {"size", "WxH", 0, CK_TAKES_FILM, OTHER, .read = ck_picture_size, .fallback = "1280x720",
      .help = "px, even numbers"},
-    {"port", "N", 0, CK_TAKES_VIEW, COUNT, PLACE(port), 1, 65535, .fallback = "one that is free",
+    {"port", "N", 0, CK_TAKES_VIEW, COUNT, PLACE(port), 0, 65535, .fallback = "one that is free",
      .help = "where the page is served, on 127.0.0.1"},
     {"speed", "X", 0, CK_TAKES_VIEW, NUMBER, PLACE(speed), 0, 100, .fallback = "1",
      .help = "times as fast as real time; 0: as fast as the engines can"},

@@ -132,7 +132,7 @@ static ck_Status try_sheet(int *end, const Page *page, int sheet, const char *di
                            "--headless",
                            "--hide-scrollbars",
                            "--force-device-scale-factor=1",
-                           "--use-angle=swiftshader",
+                           "--disable-gpu",
                            "--enable-unsafe-swiftshader",
                            "--no-first-run",
                            "--no-default-browser-check",

@@ -2,6 +2,7 @@
 
 #include "change.h"
 #include "document.h"
+#include "engines.h"
 #include "files.h"
 #include "scene.h"
 #include "session.h"
@@ -250,6 +251,32 @@ void ck_live_end(ck_Live *live) {
     free(live);
 }
 
+ck_Status ck_live_set_rate(ck_Live **live, double rate, ck_Error *error) {
+    const ck_Live *before = *live;
+    const ck_Engine *engines[CK_LIVE_ENGINES];
+    ck_Settings wanted[CK_LIVE_ENGINES];
+    const int named = ck_change_file_length(before->named);
+    const bool has_rate = before->scene.file->time.fps > 0;
+    char change[60], *changes = strdup(before->named + named), *file = NULL;
+    ck_Live *next = NULL;
+    ck_Status status = CK_OK;
+    snprintf(change, sizeof change, has_rate ? "@time.fps=%.17g" : "@time.step=%.17g", has_rate ? rate : 1 / rate);
+    for (int i = 0; i < before->count; i++) {
+        engines[i] = before->seats[i].shown.engine;
+        wanted[i] = before->seats[i].wanted;
+    }
+    if (!changes || !ck_change_merge(&changes, change) || asprintf(&file, "%.*s%s", named, before->named, changes) < 0)
+        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    else
+        status = ck_live_start(&next, file, engines, wanted, before->count, &before->limits, error);
+    free(changes);
+    free(file);
+    // the one that nobody looks at any more
+    ck_live_end(status ? next : *live);
+    if (!status) *live = next;
+    return status;
+}
+
 int ck_live_count(const ck_Live *live) {
     return live->count;
 }
@@ -367,6 +394,26 @@ static char *changes_text(const ck_Live *live) {
     return ck_text_end(&text) ? text.bytes : NULL;
 }
 
+// The settings that the session began with, where the scene has others or none.
+static ck_Status put_settings(const ck_Live *live, ck_Document *document, ck_Error *error) {
+    ck_Status status = CK_OK;
+    for (int i = 0; i < live->count; i++) {
+        const ck_Engine *engine = live->seats[i].shown.engine;
+        const ck_Settings *wanted = &live->seats[i].wanted, own = ck_engine_scene_settings(engine, &live->scene);
+        for (const ck_Setting *row = engine->settings; row && row->name && !status; row++) {
+            const double value = ck_settings_get(wanted, row->slot);
+            char key[200], text[40];
+            if (!ck_settings_has(wanted, row->slot) ||
+                (ck_settings_has(&own, row->slot) && ck_settings_get(&own, row->slot) == value))
+                continue;
+            snprintf(key, sizeof key, "settings.%s.%s", engine->name, row->name);
+            snprintf(text, sizeof text, "%.17g", value);
+            status = put(document, key, text, error);
+        }
+    }
+    return status;
+}
+
 ck_Status ck_live_save(const ck_Live *live, const char *folder, const char *name, ck_Error *error) {
     ck_Document document;
     char duration[40], *changes = changes_text(live);
@@ -380,6 +427,7 @@ ck_Status ck_live_save(const ck_Live *live, const char *folder, const char *name
     snprintf(duration, sizeof duration, "%.17g", live->frame * live->model.step);
     if (!status) status = put(&document, "time.duration", duration, error);
     if (!status && live->scene.file->truth) status = put(&document, "truth", "none", error);
+    if (!status) status = put_settings(live, &document, error);
     if (!status) status = put(&document, "changes", changes, error);
     ck_WholeFile whole = {0};
     if (!status) status = ck_whole_file_open(&whole, folder, name, error);

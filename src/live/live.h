@@ -31,6 +31,9 @@ ck_Status ck_live_start(ck_Live **live, const char *file, const ck_Engine *const
                         int count, const ck_Limits *limits, ck_Error *error);
 void ck_live_end(ck_Live *live);
 
+// Starts over with so many frames a second; *live is another then. Errors: as ck_live_start; then *live is as it was.
+ck_Status ck_live_set_rate(ck_Live **live, double rate, ck_Error *error);
+
 int ck_live_count(const ck_Live *live);
 const ck_LiveEngine *ck_live_engine(const ck_Live *live, int index);
 // The scene as it is now, with the particles where it began; and how it was then.

@@ -1,5 +1,6 @@
 #include "orders.h"
 
+#include "engines.h"
 #include "names.h"
 #include "text.h"
 #include "vector.h"
@@ -175,6 +176,18 @@ static ck_Status pace(ck_Stage *stage, json_t *order, ck_Error *error) {
     return CK_OK;
 }
 
+// Frames are where things can be changed and what is saved is counted in, so that others are a session of their own.
+static ck_Status rate(ck_Stage *stage, json_t *order, ck_Error *error) {
+    const double rate = json_number_value(json_object_get(order, "rate"));
+    if (!(rate >= 1) || rate > 1000) return ck_fail(error, CK_BAD_INPUT, "rate takes 1 to 1000 frames a second");
+    ck_Status status = ck_live_set_rate(&stage->live, rate, error);
+    if (status) return status;
+    stage->held = -1;
+    stage->moves = false;
+    take_pins(stage);
+    return CK_OK;
+}
+
 static ck_Status save(ck_Stage *stage, json_t *order, ck_Error *error) {
     char name[200];
     const char *asked = json_string_value(json_object_get(order, "name"));
@@ -190,12 +203,30 @@ static const struct {
     ck_Status (*obey)(ck_Stage *stage, json_t *order, ck_Error *error);
     const char *said; // to all
 } orders[] = {
-    {"play", play, NULL}, {"pause", wait, NULL},    {"step", step, NULL}, {"reset", reset, "back to the start"},
-    {"pace", pace, NULL}, {"set", set_value, NULL}, {"lock", lock, NULL}, {"free", let_go, NULL},
-    {"drag", drag, NULL}, {"drop", drop, NULL},     {"save", save, NULL},
+    {"play", play, NULL},   {"pause", wait, NULL}, {"step", step, NULL},     {"reset", reset, "back to the start"},
+    {"pace", pace, NULL},   {"rate", rate, NULL},  {"set", set_value, NULL}, {"lock", lock, NULL},
+    {"free", let_go, NULL}, {"drag", drag, NULL},  {"drop", drop, NULL},     {"save", save, NULL},
 };
 
-void ck_stage_obey(ck_Stage *stage, const char *message, size_t length, char *answer, size_t size) {
+// The command that does the same again, with the same engines under the same names.
+static void say_saved(char *answer, size_t size, const ck_Stage *stage, const char *name) {
+    ck_Text text;
+    if (!ck_text_begin(&text)) {
+        say(answer, size, "error", "out of memory");
+        return;
+    }
+    fprintf(text.file, "clothcheck compare %s/%s.yaml", stage->folder, name);
+    for (int i = 0; i < ck_live_count(stage->live); i++) {
+        const ck_Engine *engine = ck_live_engine(stage->live, i)->engine, *original = ck_engine_original(engine);
+        fprintf(text.file, " -e %s", engine->name);
+        if (original) fprintf(text.file, "=%s", original->name);
+    }
+    const bool has = ck_text_end(&text);
+    say(answer, size, has ? "saved" : "error", has ? text.bytes : "out of memory");
+    if (has) free(text.bytes);
+}
+
+bool ck_stage_obey(ck_Stage *stage, const char *message, size_t length, char *answer, size_t size) {
     json_error_t where;
     json_t *order = json_loadb(message, length, JSON_REJECT_DUPLICATES, &where);
     const char *word = json_string_value(json_object_get(order, "do"));
@@ -210,14 +241,12 @@ void ck_stage_obey(ck_Stage *stage, const char *message, size_t length, char *an
         status = orders[i].obey(stage, order, &error);
     if (status)
         say(answer, size, "error", error.message);
-    else if (!strcmp(word, "save")) {
-        char text[400];
-        snprintf(text, sizeof text, "%.200s/%.100s.yaml", stage->folder,
-                 json_string_value(json_object_get(order, "name")));
-        say(answer, size, "saved", text);
-    } else if (orders[i].said)
+    else if (!strcmp(word, "save"))
+        say_saved(answer, size, stage, json_string_value(json_object_get(order, "name")));
+    else if (orders[i].said)
         say(answer, size, "said", orders[i].said);
     json_decref(order);
+    return !status && orders[i].said;
 }
 
 void ck_stage_step(ck_Stage *stage) {

@@ -1,5 +1,6 @@
 #include "view.h"
 
+#include "intro.h"
 #include "orders.h"
 #include "template.h"
 #include "text.h"
@@ -34,6 +35,7 @@ typedef struct Viewer {
 } Viewer;
 
 typedef struct Order {
+    const struct mg_connection *from; // that may have gone
     char text[MOST_ORDER];
     size_t length;
 } Order;
@@ -114,8 +116,8 @@ static void welcome(struct mg_connection *connection, void *context) {
     int i = 0;
     while (i < VIEWERS && view->viewers[i].connection) i++;
     if (i < VIEWERS) view->viewers[i] = (Viewer){.connection = connection, .seen = -1};
-    pthread_mutex_unlock(&view->lock);
     if (i < VIEWERS) write_text(connection, view->intro);
+    pthread_mutex_unlock(&view->lock);
 }
 
 static Viewer *viewer_of(View *view, const struct mg_connection *connection) {
@@ -142,6 +144,7 @@ static int listen(struct mg_connection *connection, int bits, char *data, size_t
     const bool fits = is_answer || (length < MOST_ORDER && view->order_count < ORDERS);
     if (!is_answer && fits) {
         Order *order = &view->orders[(view->first_order + view->order_count++) % ORDERS];
+        order->from = connection;
         memcpy(order->text, data, length);
         order->length = length;
     }
@@ -157,11 +160,6 @@ static void part(const struct mg_connection *connection, void *context) {
     Viewer *viewer = viewer_of(view, connection);
     if (viewer) *viewer = (Viewer){0};
     pthread_mutex_unlock(&view->lock);
-}
-
-// Bodies have the tips of two axes behind all particles, as in a replay.
-static size_t shown_count(const ck_Model *model) {
-    return (size_t)(model->particle_count + 2 * model->rigid_count);
 }
 
 static void put_positions(float *out, const ck_Model *model, const ck_Trajectory *shown) {
@@ -181,7 +179,7 @@ static void put_positions(float *out, const ck_Model *model, const ck_Trajectory
 
 static size_t frame_numbers(const View *view) {
     const size_t engines = (size_t)ck_live_count(view->stage.live);
-    return HEAD + engines * (OF_ENGINE + 3 * shown_count(ck_live_model(view->stage.live)));
+    return HEAD + engines * (OF_ENGINE + 3 * ck_intro_shown_count(ck_live_model(view->stage.live)));
 }
 
 static void put_u32(float *out, uint32_t number) {
@@ -198,7 +196,7 @@ static void fill_frame(const View *view, float *out) {
     put_u32(out + 2, view->stage.plays);
     put_u32(out + 3, (uint32_t)count);
     float *of = out + HEAD, *positions = of + (size_t)count * OF_ENGINE;
-    for (int i = 0; i < count; i++, of += OF_ENGINE, positions += 3 * shown_count(model)) {
+    for (int i = 0; i < count; i++, of += OF_ENGINE, positions += 3 * ck_intro_shown_count(model)) {
         const ck_LiveEngine *engine = ck_live_engine(live, i);
         const double *at = ck_trajectory_position(&engine->shown, 0);
         const double *first = ck_trajectory_position(&ck_live_engine(live, 0)->shown, 0);
@@ -242,6 +240,14 @@ static void tell_all(View *view, const char *text) {
     pthread_mutex_unlock(&view->lock);
 }
 
+// To one viewer, where it is still there.
+static void tell_one(View *view, const struct mg_connection *connection, const char *text) {
+    pthread_mutex_lock(&view->lock);
+    const Viewer *viewer = viewer_of(view, connection);
+    if (viewer) write_text(viewer->connection, text);
+    pthread_mutex_unlock(&view->lock);
+}
+
 // Why engines have ended, once each.
 static void tell_ends(View *view, bool *told) {
     for (int i = 0; i < ck_live_count(view->stage.live); i++) {
@@ -280,15 +286,29 @@ static bool next_order(View *view, double until, Order *order) {
     return has;
 }
 
+// Another session than that of before: all viewers begin again. Without memory they go on with what they know.
+static void begin_again(View *view) {
+    char *intro = ck_intro_make(view->stage.live);
+    if (!intro) return;
+    pthread_mutex_lock(&view->lock);
+    free(view->intro);
+    view->intro = intro;
+    pthread_mutex_unlock(&view->lock);
+    tell_all(view, intro);
+}
+
 // Does what is asked until a time, s.
 static bool obey_until(View *view, double until) {
     Order order;
     char answer[1000];
     bool any = false;
     while (next_order(view, until, &order)) {
+        const ck_Live *before = view->stage.live;
         any = true;
-        ck_stage_obey(&view->stage, order.text, order.length, answer, sizeof answer);
-        if (*answer) tell_all(view, answer);
+        const bool is_for_all = ck_stage_obey(&view->stage, order.text, order.length, answer, sizeof answer);
+        if (view->stage.live != before) begin_again(view);
+        if (*answer && is_for_all) tell_all(view, answer);
+        if (*answer && !is_for_all) tell_one(view, order.from, answer);
     }
     return any;
 }
@@ -314,99 +334,6 @@ static void run(View *view, float *frame) {
         tell_ends(view, told);
         show_frame(view, frame, number);
     }
-}
-
-static json_t *numbers(const double *from, int count) {
-    json_t *array = json_array();
-    for (int i = 0; i < count && array; i++) json_array_append_new(array, json_real(isfinite(from[i]) ? from[i] : 0));
-    return array;
-}
-
-// A collider as a replay has it: its place, and a plane's normal or a solid's radius, axes and half its core.
-static json_t *collider_of(const ck_Model *model, const ck_Collider *collider) {
-    double all[16];
-    memcpy(all, collider->point, sizeof collider->point);
-    if (collider->shape == CK_PLANE) {
-        memcpy(all + 3, collider->normal, sizeof collider->normal);
-        return json_pack("{s:s, s:o}", "shape", "plane", "numbers", numbers(all, 6));
-    }
-    all[3] = collider->radius;
-    memcpy(all + 4, collider->axes, sizeof collider->axes);
-    for (int k = 0; k < 3; k++) all[13 + k] = fmin(collider->half[k], model->size);
-    return json_pack("{s:s, s:o}", "shape", ck_shape_names[collider->shape], "numbers", numbers(all, 16));
-}
-
-static void add_body(json_t *intro, const ck_Model *model) {
-    json_t *springs = json_array(), *rests = json_array(), *triangles = json_array(), *colliders = json_array(),
-           *bodies = json_array();
-    for (int i = 0; i < model->spring_count; i++) {
-        const ck_Spring *spring = &model->springs[i];
-        if (spring->kind != CK_STRUCTURAL) continue;
-        json_array_append_new(springs, json_integer(spring->a));
-        json_array_append_new(springs, json_integer(spring->b));
-        json_array_append_new(rests, json_real(spring->rest));
-    }
-    for (int i = 0; i < 3 * model->triangle_count; i++)
-        json_array_append_new(triangles, json_integer(model->triangles[i / 3][i % 3]));
-    for (int i = 0; i < model->collider_count; i++)
-        json_array_append_new(colliders, collider_of(model, &model->colliders[i]));
-    for (int i = 0; i < model->rigid_count; i++) {
-        const ck_Collider *shape = &model->rigid[i].shape;
-        const double of[4] = {shape->radius, shape->half[0], shape->half[1], shape->half[2]};
-        json_array_append_new(bodies, numbers(of, 4));
-    }
-    json_object_set_new(intro, "springs", springs);
-    json_object_set_new(intro, "rests", rests);
-    json_object_set_new(intro, "triangles", triangles);
-    json_object_set_new(intro, "colliders", colliders);
-    json_object_set_new(intro, "bodies", bodies);
-}
-
-// What the scene is set to, for the page's fields.
-static void add_values(json_t *intro, const ck_Live *live) {
-    const ck_Model *model = ck_live_model(live);
-    const ck_Spring *spring = model->spring_count ? &model->springs[0] : NULL;
-    const bool is_rigid = spring && isinf(spring->stiffness);
-    json_object_set_new(intro, "gravity", numbers(model->gravity, 3));
-    json_object_set_new(intro, "force", numbers(model->force, 3));
-    json_object_set_new(intro, "drag", json_real(model->drag));
-    json_object_set_new(intro, "stiffness", spring && !is_rigid ? json_real(spring->stiffness) : json_null());
-    json_object_set_new(intro, "damping", spring && !is_rigid ? json_real(spring->damping) : json_null());
-    json_t *pins = json_array();
-    for (int i = 0; i < model->particle_count; i++)
-        if (model->pinned[i]) json_array_append_new(pins, json_integer(i));
-    json_object_set_new(intro, "pins", pins);
-}
-
-static json_t *engine_of(const ck_Engine *engine) {
-    json_t *settings = json_array();
-    for (const ck_Setting *row = engine->settings; row && row->name; row++)
-        json_array_append_new(settings,
-                              json_pack("{s:s, s:s, s:b, s:f, s:f, s:s}", "name", row->name, "help", row->help, "whole",
-                                        row->is_whole, "least", row->least, "most", row->most, "rule", row->rule));
-    return json_pack("{s:s, s:s, s:s, s:b, s:o}", "name", engine->name, "about", engine->about, "family",
-                     engine->family, "stock", engine->is_stock, "settings", settings);
-}
-
-static char *make_intro(const ck_Live *live) {
-    const ck_Model *model = ck_live_model(live);
-    const char *about = ck_live_scene(live)->file->about;
-    json_t *intro =
-        json_pack("{s:s, s:s, s:s, s:f, s:f, s:f, s:i, s:i, s:i}", "kind", "intro", "scene", model->name, "about",
-                  about ? about : "", "step", model->step, "size", model->size, "spacing", model->spacing, "columns",
-                  model->columns, "particles", (int)shown_count(model), "cloth", ck_model_cloth_count(model));
-    json_t *engines = json_array();
-    if (!intro || !engines) return NULL;
-    for (int i = 0; i < ck_live_count(live); i++)
-        json_array_append_new(engines, engine_of(ck_live_engine(live, i)->engine));
-    json_object_set_new(intro, "engines", engines);
-    json_object_set_new(intro, "fastest", json_real(CK_STAGE_FASTEST * model->size));
-    json_object_set_new(intro, "weight", json_real(9.81 * ck_model_free_mass(model) / fmax(1, model->particle_count)));
-    add_body(intro, model);
-    add_values(intro, live);
-    char *text = json_dumps(intro, JSON_COMPACT);
-    json_decref(intro);
-    return text;
 }
 
 static ck_Status make_page(View *view, ck_Error *error) {
@@ -454,7 +381,7 @@ static ck_Status start_server(View *view, int wanted, char *address, size_t size
     return CK_OK;
 }
 
-ck_Status ck_view_run(ck_Live *live, const ck_ViewOptions *options, void (*ready)(void *context, const char *address),
+ck_Status ck_view_run(ck_Live **live, const ck_ViewOptions *options, void (*ready)(void *context, const char *address),
                       void *context, ck_Error *error) {
     char address[120];
     View *view = calloc(1, sizeof *view);
@@ -462,12 +389,12 @@ ck_Status ck_view_run(ck_Live *live, const ck_ViewOptions *options, void (*ready
     if (!view) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     pthread_mutex_init(&view->lock, NULL);
     pthread_cond_init(&view->woken, NULL);
-    ck_Status status = ck_stage_begin(&view->stage, live);
+    ck_Status status = ck_stage_begin(&view->stage, *live);
     view->stage.folder = options->folder;
     view->stage.plays = !options->waits;
     view->stage.real_time = options->real_time;
     view->orders = calloc(ORDERS, sizeof *view->orders);
-    view->intro = make_intro(live);
+    view->intro = ck_intro_make(*live);
     if (!status) frame = calloc(frame_numbers(view), sizeof *frame);
     if (status || !view->orders || !view->intro || !frame) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status && (!ck_token_of_port(view->token, options->port) || !ck_token_draw(view->nonce)))
@@ -479,6 +406,7 @@ ck_Status ck_view_run(ck_Live *live, const ck_ViewOptions *options, void (*ready
         run(view, frame);
     }
     if (view->server) mg_stop(view->server);
+    *live = view->stage.live;
     ck_stage_end(&view->stage);
     free(view->page);
     free(view->intro);

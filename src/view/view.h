@@ -18,9 +18,9 @@ typedef struct ck_ViewOptions {
 // from another origin, is refused. Positions go out as one binary message a frame:
 //   u32 frame, f32 s, u32 1 where it plays, u32 engines; of each engine u32 ck_RunStatus + 1 where it has ended, else
 //   0, and f32 ms of CPU and of wall time, sag, largest strain, distance to the first engine; and of each f32[3*shown]
-// A viewer that has two unanswered misses those in between.
+// A viewer that has two unanswered misses those in between. Another frame rate makes *live another.
 // Errors: CK_IO, CK_NO_MEMORY.
-ck_Status ck_view_run(ck_Live *live, const ck_ViewOptions *options, void (*ready)(void *context, const char *address),
+ck_Status ck_view_run(ck_Live **live, const ck_ViewOptions *options, void (*ready)(void *context, const char *address),
                       void *context, ck_Error *error);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "fixture.h"
 
+#include "engines.h"
 #include "live.h"
 #include "orders.h"
 #include "session.h"
@@ -21,7 +22,8 @@ static const char *const names[] = {"native-verlet", "native-xpbd", "bullet-pbd"
 
 static int start(ck_Live **live, ck_Stage *stage, const char *path) {
     const ck_Engine *engines[ENGINES];
-    ck_Settings wanted[ENGINES] = {0};
+    // as from the command line
+    ck_Settings wanted[ENGINES] = {{0}, {.substeps = 11}};
     const ck_Limits limits = ck_limits_default();
     ck_Error error = {0};
     int count = 0;
@@ -48,7 +50,8 @@ static void run_again(const char *path, const ck_Engine *engine, ck_Trajectory *
     ck_Settings used;
     if (fixture_open(&fixture, path, &error)) fail_msg("%s", error.message);
     assert_int_equal(ck_trajectory_create(shown, &fixture.model, &error), CK_OK);
-    assert_int_equal(ck_session_begin(&session, engine, &fixture.model, &(ck_Settings){0}, &used, NULL, &error), CK_OK);
+    const ck_Settings wanted = ck_engine_scene_settings(engine, &fixture.scene);
+    assert_int_equal(ck_session_begin(&session, engine, &fixture.model, &wanted, &used, NULL, &error), CK_OK);
     for (int frame = 0; frame < fixture.model.frame_count; frame++)
         assert_int_equal(ck_session_advance(&session, frame), CK_STEP_OK);
     ck_session_read(&session, shown, 0);
@@ -131,6 +134,44 @@ static void test_orders(void **state) {
     free(path);
 }
 
+// Another frame rate is another session, that begins as this one did, and that is saved with it.
+static void test_rate(void **state) {
+    (void)state;
+    ck_Live *live;
+    ck_Stage stage;
+    char *path = fixture_file(cloth), saved[300];
+    const int count = start(&live, &stage, path);
+    tell(&stage, "{\"do\":\"lock\",\"particle\":20}", NULL);
+    tell(&stage, "{\"do\":\"drag\",\"particle\":35,\"to\":[0.4, 0.2, 0.4]}", NULL);
+    ck_stage_step(&stage);
+    tell(&stage, "{\"do\":\"rate\",\"rate\":0}", "rate takes");
+    assert_int_equal(ck_live_frame(stage.live), 1);
+    tell(&stage, "{\"do\":\"rate\",\"rate\":120}", NULL);
+    tell(&stage, "{\"do\":\"rate\",\"rate\":25}", NULL);
+    const ck_Model *model = ck_live_model(stage.live);
+    assert_int_equal(ck_live_frame(stage.live), 0);
+    assert_near("step", model->step, 0.04, 1e-15);
+    assert_false(model->pinned[20]);
+    assert_int_equal(stage.held, -1);
+    for (int frame = 0; frame < 9; frame++) ck_stage_step(&stage);
+    tell(&stage, "{\"do\":\"save\",\"name\":\"slow\"}", "slow.yaml -e native-verlet -e native-xpbd");
+    snprintf(saved, sizeof saved, "%s/slow.yaml", fixture_directory);
+    for (int i = 0; i < count; i++) {
+        const ck_LiveEngine *engine = ck_live_engine(stage.live, i);
+        ck_Trajectory again;
+        run_again(saved, engine->engine, &again);
+        assert_int_equal(again.frame_count, 9);
+        assert_memory_equal(ck_trajectory_position(&engine->shown, 0), ck_trajectory_position(&again, 0),
+                            6 * sizeof(double) * (size_t)again.particle_count);
+        ck_trajectory_free(&again);
+    }
+    live = stage.live;
+    ck_stage_end(&stage);
+    ck_live_end(live);
+    unlink(path);
+    free(path);
+}
+
 // What is no order, names what is not there, or reaches for a file, does nothing but say so.
 static void test_bad_orders(void **state) {
     (void)state;
@@ -176,6 +217,6 @@ static void test_bad_orders(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_bits), cmocka_unit_test(test_orders),
-                                       cmocka_unit_test(test_bad_orders)};
+                                       cmocka_unit_test(test_rate), cmocka_unit_test(test_bad_orders)};
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

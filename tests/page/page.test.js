@@ -53,11 +53,12 @@ before(async () => {
 	makeReport();
 	browser = await chromium.launch({
 		executablePath: CHROMIUM,
-		args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
+		args: ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--no-first-run",
 			"--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"],
 	});
 	page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-	page.on("console", (message) => told.push(`${message.type()}: ${message.text()}`));
+	// without a graphics processor each picture is read back, and the driver complains of it
+	page.on("console", (message) => /^\[\.WebGL-.*ReadPixels/.test(message.text()) || told.push(`${message.type()}: ${message.text()}`));
 	page.on("pageerror", (error) => told.push(`error: ${error.message}`));
 	page.on("request", (request) => {
 		const url = request.url();
@@ -96,6 +97,22 @@ test("the first screen answers which solver, and at what cost", async () => {
 	const frame = await page.locator("#answer-table tbody tr").first().locator("td").nth(4).getAttribute("data-value");
 	assert.ok(Math.abs(60 * Number(frame) / Number(cost) - 1) < 5e-3);
 	await screenshot("first");
+});
+
+test("settings stand in the engine's own names, and a click copies them", async () => {
+	const own = page.locator("#answer-own");
+	await own.locator("summary").click();
+	const text = await own.locator("pre").filter({ hasText: "bullet-pbd on cloth_two_corners" }).textContent();
+	const rows = csvRows("ledger.csv").filter((row) => row.scene === "cloth_two_corners" && row.engine === "bullet-pbd");
+	assert.ok(rows.length > 5);
+	for (const row of rows) {
+		const line = text.split("\n").find((one) => one.startsWith(`${row.native_parameter} = `) && one.includes(row.quantity));
+		assert.equal(Number(line.match(/ = ([^;]*);/)[1]), Number(row.native_value), row.quantity);
+	}
+	await page.evaluate(() => navigator.clipboard.writeText = async (copied) => { window.copied = copied; });
+	await own.getByLabel("copy bullet-pbd's own settings").click();
+	assert.equal(await page.evaluate(() => window.copied), text);
+	await own.locator("summary").click();
 });
 
 test("without the engines of whoever made the table, another one answers", async () => {
@@ -524,14 +541,30 @@ test("on paper nothing is cut, black or a control", async () => {
 test("a page of a study alone opens, too", async () => {
 	const study = mkdtempSync(join(tmpdir(), "clothcheck-study-"));
 	cpSync(join(directory, "machine.csv"), join(study, "machine.csv"));
-	run("stability", "rope_hanging", "--engine", "native-verlet", "--out", study);
+	run("stability", "rope_hanging", "--engine", "native-verlet", "--engine", "bullet-pbd", "--out", study);
 	run("report", study);
 	const other = await browser.newPage();
 	const errors = [];
 	other.on("pageerror", (error) => errors.push(error.message));
 	await other.goto(`file://${study}/index.html`);
 	await other.waitForFunction(() => document.body.dataset.ready === "yes");
-	assert.equal(await other.locator('figure[data-chart="stability"] svg').count(), 1);
+	const figure = other.locator('figure[data-chart="stability"]');
+	assert.equal(await figure.locator("svg").count(), 1);
+	// the second panel has numbers of its own
+	const file = join(study, "charts/rope_hanging.stability.csv");
+	const found = readFileSync(file, "utf8").split("\n").map((line) => line.split(",")).filter((row) => row[0] === "bullet-pbd" && row[3] === "ok" && row[5] === "0");
+	const at = await figure.evaluate((shown) => {
+		const marks = [...shown.querySelectorAll("g[id*=gnuplot_plot_] use")].map((mark) => mark.getBoundingClientRect());
+		return marks.sort((a, b) => b.x - a.x).map(({ x, y, width, height }) => [x + width / 2, y + height / 2]);
+	});
+	let told = null;
+	for (const [x, y] of at) {
+		await other.mouse.move(x, y);
+		told = /^ok: (\S+) at (\S+)$/.exec(await figure.locator(".chart-tip").innerText());
+		if (told) break;
+	}
+	const isNear = (value, wanted) => Math.abs(Number(value) / Number(wanted) - 1) < 0.02;
+	assert.ok(found.some((row) => isNear(told[2], row[1]) && isNear(told[1], row[2])), told[0]);
 	assert.equal(await other.locator("#answer").isHidden(), true);
 	assert.deepEqual(errors, []);
 	await other.close();

@@ -78,7 +78,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
         status = ck_live_start(&live, arguments.scenes[0], engines, wanted, count, &arguments.options.limits, &error);
     if (!status && !tell_engines(live)) status = ck_fail(&error, CK_BAD_INPUT, "no engine takes the scene");
     const ck_ViewOptions options = {arguments.port, arguments.out, arguments.begins_paused, arguments.speed};
-    if (!status) status = ck_view_run(live, &options, ready, &arguments, &error);
+    if (!status) status = ck_view_run(&live, &options, ready, &arguments, &error);
     ck_live_end(live);
     ck_comparison_free(&comparison);
     ck_arguments_free(&arguments);

@@ -110,11 +110,10 @@ static void write_plot(FILE *file, const ck_Chart *chart, const char *scene, con
     fprintf(file, "print 'chart %s'\nreset\nload 'looks.gp'\ndata = '%s.csv'\ntitle = '%s%s%s'\n", name, name,
             chart->is_of_all ? "" : scene, chart->is_of_all ? "" : ": ", chart->title);
     write_terminal(file, chart, terminal, paper_width);
-    fprintf(file, "set output '%s.%s'\n", name, ending);
+    fprintf(file, "set output '%s.%s'\naxes = '%s%s'\nheight = %d.0\n", name, ending,
+            terminal == screen_svg ? name : "", terminal == screen_svg ? ".axes" : "", chart->height);
     fprintf(file, "load sources.'/common.gp'\nload sources.'/%s.gp'\n", chart->name);
-    if (terminal == screen_svg)
-        fprintf(file, "axes = '%s.axes'\nheight = %d.0\nload sources.'/axes.gp'\n", name, chart->height);
-    fprintf(file, "unset output\nundefine is_paper\n");
+    fprintf(file, "if (!has_panels) { load sources.'/axes.gp' }\nunset output\n");
 }
 
 // Writes a chart's CSV. Returns its rows, and without any takes it away; -1: it cannot be written.
@@ -153,11 +152,18 @@ static void read_complaint(char *text, size_t size, const char *directory) {
     free(path);
 }
 
-// Runs gnuplot on charts.gp in the directory. What it says goes to gnuplot.log there.
+static void forget_log(const char *directory) {
+    char *path = ck_path_join(directory, "gnuplot.log");
+    if (path) unlink(path);
+    free(path);
+}
+
+// Runs gnuplot on charts.gp in the directory. What it says goes to gnuplot.log there, which stays only where it failed.
 static ck_Status run_gnuplot(const char *directory, ck_Error *error) {
     static const char *const words[] = {"gnuplot", "-d", "charts.gp", NULL};
     int end;
     ck_Status status = ck_tool_run(&end, words, directory, "gnuplot.log", 0, error);
+    if (!status && end == 0) forget_log(directory);
     if (status || end == 0) return status;
     if (end == CK_TOOL_MISSING)
         return ck_fail(error, CK_IO, "gnuplot is not there; charts need Debian's package gnuplot-nox or its like");

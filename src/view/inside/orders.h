@@ -25,9 +25,9 @@ typedef struct ck_Stage {
 ck_Status ck_stage_begin(ck_Stage *stage, ck_Live *live);
 void ck_stage_end(ck_Stage *stage);
 
-// Does what a message asks, and writes an answer for all viewers, or an empty one. A message that is none is refused in
-// the answer, and does nothing.
-void ck_stage_obey(ck_Stage *stage, const char *message, size_t length, char *answer, size_t size);
+// Does what a message asks, and writes an answer, or an empty one. A message that is none is refused in the answer, and
+// does nothing. True where the answer is for all viewers, not for the one alone that asked.
+bool ck_stage_obey(ck_Stage *stage, const char *message, size_t length, char *answer, size_t size);
 
 // A frame, with what is dragged on its way.
 void ck_stage_step(ck_Stage *stage);
