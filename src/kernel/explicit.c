@@ -44,8 +44,8 @@ void ck_explicit_kick(ck_Explicit *body) {
     body->kind->kick(body);
 }
 
-void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
-    body->kind->drift(body, surfaces, count, near, loose);
+bool ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+    return body->kind->drift(body, surfaces, count, near, loose);
 }
 
 void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {

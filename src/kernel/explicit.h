@@ -48,14 +48,15 @@ typedef struct ck_Near {
 // other half. Together they are ck_explicit_step with one substep.
 //
 // Those that may come to touch a surface within the substep, [n] at most, by how far each can get, are noted in near
-// and their state at its start in loose, which says how many. Cost: half a pass, and some ns for each of them.
-void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
+// and their state at its start in loose, which says how many. Both are those of the last substep, as ck_explicit_put
+// left them; true where near is as it was. Cost: half a pass, and some ns for each that was not there before.
+bool ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
 void ck_explicit_kick(ck_Explicit *body);
 
 // After a kick: their accelerations.
 void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose);
 
-// What is made of them: their velocity, and before a kick place and predicted velocity, too.
+// What is made of them: before a kick place and predicted velocity, after it their velocity.
 void ck_explicit_put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
 
 // The accelerations at the end of the last call, as the layout has them, with 0 for what is not free; [count] m/s².

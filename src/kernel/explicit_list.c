@@ -52,14 +52,23 @@ static int take_chunk(const ck_ExplicitList *list, int chunk, ck_Near *near, con
     return found;
 }
 
-static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
+    bool are_kept = true;
     loose->count = 0;
     for (int chunk = 0; chunk < list->springs.chunks; chunk++) {
+        const int *start = list->springs.chunk_start + chunk, first = start[0] / CK_QUAD;
+        ck_NearPart *part = &list->parts[chunk];
         list->loops->near_chunk(list, chunk, surfaces, count, list->near);
-        loose->count = take_chunk(list, chunk, near, loose);
+        if (!ck_near_is_kept(part, loose->count, list->near + first, list->near_before + first,
+                             (size_t)(start[1] / CK_QUAD - first))) {
+            *part = (ck_NearPart){loose->count, take_chunk(list, chunk, near, loose) - loose->count};
+            are_kept = false;
+        }
+        loose->count += part->count;
         run_chunk(list, 0, chunk);
     }
+    return are_kept;
 }
 
 static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {
@@ -72,8 +81,10 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *lo
     for (int i = 0; i < loose->count; i++)
         for (int axis = 0; axis < 3; axis++) {
             const long from = axis * loose->stride + i;
-            list->v[CK_POINT * near[i].place + axis] = loose->v[from];
-            if (is_kicked) continue;
+            if (is_kicked) {
+                list->v[CK_POINT * near[i].place + axis] = loose->v[from];
+                continue;
+            }
             list->seats[near[i].place].x[axis] = loose->x[from];
             list->seats[near[i].place].predicted[axis] = loose->predicted[from];
         }
@@ -116,6 +127,7 @@ static void destroy(ck_Explicit *body) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
     ck_spring_list_free(&list->springs);
     free(list->state);
+    free(list->parts);
     free(list);
 }
 
@@ -150,6 +162,7 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
         ck_model_field(model, i, load);
         for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
     }
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++) list->parts[chunk].first = -1;
     pace(body, setup);
     seat(list, setup->position, setup->velocity);
     // where it is, and the acceleration there: what a kick gives that goes nowhere
@@ -161,8 +174,9 @@ static bool allocate(ck_ExplicitList *list) {
     const size_t places = (size_t)list->springs.places,
                  springs = (size_t)list->springs.pack_start[list->springs.chunks] * CK_PACK + 2;
     const size_t bytes = (places * (5 * CK_POINT + 3) + springs * CK_POINT + 8) * sizeof(double);
+    list->parts = malloc(sizeof *list->parts * (size_t)list->springs.chunks);
     list->state = aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!list->state) return false;
+    if (!list->parts || !list->state) return false;
     memset(list->state, 0, bytes);
     list->seats = (ck_Seat *)list->state;
     list->force = list->state + 2 * CK_POINT * places;
@@ -172,6 +186,7 @@ static bool allocate(ck_ExplicitList *list) {
     list->gain = list->load + CK_POINT * places;
     list->resistance = list->gain + places;
     list->near = (uint8_t *)(list->resistance + places);
+    list->near_before = list->near + places / CK_QUAD;
     return true;
 }
 

@@ -77,14 +77,22 @@ static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, cons
 }
 
 // Row by row, so that what one step has read the next finds in the cache.
-static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    const size_t span = (size_t)cloth->rows.span;
+    bool are_kept = true;
     loose->count = 0;
     for (int row = 0; row < cloth->rows.rows; row++) {
+        ck_NearPart *part = &cloth->parts[row];
         cloth->loops->near_row(cloth, row, surfaces, count, cloth->near);
-        loose->count = take_row(cloth, row, near, loose);
+        if (!ck_near_is_kept(part, loose->count, cloth->near, cloth->near_before + span * (size_t)row, span)) {
+            *part = (ck_NearPart){loose->count, take_row(cloth, row, near, loose) - loose->count};
+            are_kept = false;
+        }
+        loose->count += part->count;
         run_row(cloth, 0, row);
     }
+    return are_kept;
 }
 
 static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all) {
@@ -98,8 +106,10 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *al
     const ck_Loose loose = *all;
     for (int i = 0; i < loose.count; i++) {
         const long place = near[i].place;
-        put_tile(cloth.v + place, loose.v + i, loose.stride);
-        if (is_kicked) continue;
+        if (is_kicked) {
+            put_tile(cloth.v + place, loose.v + i, loose.stride);
+            continue;
+        }
         put_tile(cloth.x + place, loose.x + i, loose.stride);
         put_tile(cloth.predicted + place, loose.predicted + i, loose.stride);
     }
@@ -124,6 +134,8 @@ static void destroy(ck_Explicit *body) {
     free(cloth->state);
     free(cloth->pairs);
     free(cloth->near);
+    free(cloth->near_before);
+    free(cloth->parts);
     free(cloth);
 }
 
@@ -148,6 +160,7 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     static const double none[3];
     if (CK_IS_SINGLE) memcpy(cloth->origin, setup->position, sizeof cloth->origin);
+    for (int row = 0; row < cloth->rows.rows; row++) cloth->parts[row].first = -1;
     ck_rows_load(&cloth->rows, cloth->x, setup->position, cloth->origin);
     ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity, none);
     pace(body, setup);
@@ -170,7 +183,9 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
     cloth->pairs = ck_rows_allocate(&row, 2);
     cloth->near = malloc((size_t)cloth->rows.span);
-    if (!cloth->state || !cloth->pairs || !cloth->near) {
+    cloth->near_before = malloc((size_t)cloth->rows.span * (size_t)cloth->rows.rows);
+    cloth->parts = malloc(sizeof *cloth->parts * (size_t)cloth->rows.rows);
+    if (!cloth->state || !cloth->pairs || !cloth->near || !cloth->near_before || !cloth->parts) {
         destroy(&cloth->base);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }

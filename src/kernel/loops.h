@@ -47,9 +47,9 @@ typedef struct ck_Touched {
     double dt, slack; // s; m, closer than which is touching
 } ck_Touched;
 
-// One substep of those that rest or slide on one plane or ball and go on to, and half a kick; then the other half. See
-// touch_loop.c.
-typedef void ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
+// One substep of those that rest or slide on one plane or ball and go on to, and half a kick; then the other half. True
+// where others are left alone. See touch_loop.c.
+typedef bool ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
 typedef void ck_TouchHold(double dt, const ck_Loose *loose);
 
 // Which particles of a row may come to touch one within a substep; see near_loop.c.

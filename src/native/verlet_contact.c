@@ -120,6 +120,13 @@ static void kick_alone(const ck_Loose *loose, const ck_Contact *contact) {
     }
 }
 
+// What fills the last vector up weighs nothing.
+static void weigh(const ck_VerletContact *contact, const ck_Model *model) {
+    const ck_Loose *loose = &contact->loose;
+    for (int i = 0; i < loose->count; i++) loose->mass[i] = model->mass[contact->near[i].particle];
+    for (long i = loose->count; i % CK_STRIPE; i++) loose->mass[i] = 0;
+}
+
 void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Explicit *body) {
     ck_Contact *contact = native->contact;
     const ck_Model *model = native->model;
@@ -128,21 +135,19 @@ void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Expl
     if (contact->motion) ck_contact_follow(contact, ck_native_time(native));
     if (contact->motion || !native->done) set_surfaces(own->surfaces, contact);
     const ck_Touched touch = {own->surfaces, model->collider_count, native->dt, contact->slack};
-    ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose);
-    for (int i = 0; i < loose->count; i++) {
-        loose->mass[i] = model->mass[own->near[i].particle];
-        loose->is_alone[i] = 1;
-    }
-    // what fills the last vector up weighs nothing
-    for (long i = loose->count; i % CK_STRIPE; i++) loose->mass[i] = 0;
+    if (!ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose)) weigh(own, model);
     contact->elapsed = native->dt;
-    if (!contact->motion) loops->touch_slide(&touch, loose, contact->impulse);
-    follow_alone(loose, contact);
+    bool any_alone = true;
+    if (contact->motion)
+        for (int i = 0; i < loose->count; i++) loose->is_alone[i] = 1;
+    else
+        any_alone = loops->touch_slide(&touch, loose, contact->impulse);
+    if (any_alone) follow_alone(loose, contact);
     ck_explicit_put(body, own->near, loose, false);
     native->done++;
     ck_explicit_kick(body);
     ck_explicit_take(body, own->near, loose);
     if (!contact->motion) loops->touch_hold(native->dt, loose);
-    kick_alone(loose, contact);
+    if (any_alone) kick_alone(loose, contact);
     ck_explicit_put(body, own->near, loose, true);
 }

@@ -11,7 +11,7 @@ typedef struct ck_ExplicitKind {
     const double *(*acceleration)(const ck_Explicit *body, size_t *count);
     void (*destroy)(ck_Explicit *body);
     void (*step)(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
-    void (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
+    bool (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
     void (*kick)(ck_Explicit *body);
     void (*take)(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose);
     void (*put)(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
@@ -23,6 +23,22 @@ extern const ck_ExplicitKind ck_explicit_rows, ck_explicit_list;
 #ifndef CK_SINGLE
 extern const ck_ExplicitKind ck_explicit_rows_single;
 #endif
+
+// The near particles of a row or a chunk in the last substep, of which so many are loose, from the first on.
+typedef struct ck_NearPart {
+    int first, count; // first −1: none is kept
+} ck_NearPart;
+
+// True where a part's marks, [size], are those of the last substep and its particles stand where they stood: then what
+// is loose of them is their state. Else notes the marks.
+CK_INLINE bool ck_near_is_kept(const ck_NearPart *part, int found, const uint8_t *marks, uint8_t *before, size_t size) {
+    unsigned differ = part->first != found;
+    for (size_t i = 0; i < size; i++) {
+        differ |= marks[i] ^ before[i];
+        before[i] = marks[i];
+    }
+    return !differ;
+}
 
 // The first member of every layout's own structure.
 struct ck_Explicit {

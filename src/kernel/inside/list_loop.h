@@ -17,15 +17,16 @@ typedef struct ck_ExplicitList {
     ck_SpringList springs;
     double dt; // s
     int terms;
-    uint32_t substeps;  // of this call
-    ck_Seat *seats;     // [places]
-    double *v;          // points; between substeps of a call half a substep ahead
-    double *a;          // points, at the end of a call
-    double *load;       // points: what pulls whatever happens, N
-    double *force;      // a point a spring: on its end a
-    double *gain;       // [places] m/s a substep for each N: dt/m where free, else 0
-    double *resistance; // [places] N·s/m of drag
-    uint8_t *near;      // [places/4] a bit for each of a quad that may touch
+    uint32_t substeps;           // of this call
+    ck_Seat *seats;              // [places]
+    double *v;                   // points; between substeps of a call half a substep ahead
+    double *a;                   // points, at the end of a call
+    double *load;                // points: what pulls whatever happens, N
+    double *force;               // a point a spring: on its end a
+    double *gain;                // [places] m/s a substep for each N: dt/m where free, else 0
+    double *resistance;          // [places] N·s/m of drag
+    uint8_t *near, *near_before; // [places/4] a bit for each of a quad that may touch
+    ck_NearPart *parts;          // [chunks]
     double *state;
 } ck_ExplicitList;
 

@@ -13,15 +13,6 @@ CK_INLINE ck_NearShape ck_near_shape(const ck_NearSurface *surface) {
     return surface->is_plane ? CK_NEAR_PLANE : surface->axis_count ? CK_NEAR_SOLID : CK_NEAR_BALL;
 }
 
-// How far particles go in a substep at most, |v|·dt + |a|·dt²/2, and some rounding.
-CK_INLINE ck_Lanes ck_near_way(ck_Lanes3 v, ck_Lanes3 a, double substep) {
-    const ck_Lanes squared[] = {ck_lanes3_dot(v, v), ck_lanes3_dot(a, a)};
-    ck_Lanes inverse[2];
-    ck_lanes_inverse_root(inverse, squared, 2);
-    const double dt = substep * (1 + 1e-9);
-    return dt * (squared[0] * inverse[0]) + 0.5 * dt * dt * (squared[1] * inverse[1]);
-}
-
 // From a surface's core, or a plane's point.
 CK_INLINE ck_Lanes3 ck_near_out(const ck_NearSurface *surface, ck_Lanes3 x) {
     ck_Lanes3 from = ck_lanes3_subtract(x, ck_lanes3_all(surface->point)), out = from;
@@ -48,13 +39,17 @@ CK_INLINE ck_Lanes ck_near_sum(ck_Lanes3 a) {
     return ck_lanes_absolute(a.x) + ck_lanes_absolute(a.y) + ck_lanes_absolute(a.z);
 }
 
-// A bit for each that a surface may be in reach of, by a way that is at most √3 as long as ck_near_way: without a root,
-// as most are far from all. What is no number is near.
+// More than particles go in a substep, |v|·dt + |a|·dt²/2 and some rounding, by at most √3: without a root.
+CK_INLINE ck_Lanes ck_near_most(ck_Lanes3 v, ck_Lanes3 a, double substep) {
+    const double dt = substep * (1 + 1e-9);
+    return dt * ck_near_sum(v) + 0.5 * dt * dt * ck_near_sum(a);
+}
+
+// A bit for each that a surface may be in reach of. What is no number is near.
 //   shape  a constant of the caller: what the surface is
 CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_NearSurface *surface,
                                 const ck_NearShape shape) {
-    const double dt = substep * (1 + 1e-9);
-    const ck_Lanes reach = dt * ck_near_sum(v) + 0.5 * dt * dt * ck_near_sum(a) + (surface->margin + surface->radius);
+    const ck_Lanes reach = ck_near_most(v, a, substep) + (surface->margin + surface->radius);
     const ck_Lanes3 out =
         shape == CK_NEAR_SOLID ? ck_near_out(surface, x) : ck_lanes3_subtract(x, ck_lanes3_all(surface->point));
     const ck_LaneMask is_far = shape == CK_NEAR_PLANE

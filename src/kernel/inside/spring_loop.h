@@ -20,7 +20,8 @@ typedef struct ck_ExplicitCloth {
     ck_Real *a;    // acceleration at the end of a call, else the springs' forces from above so far
     ck_Real *gain; // m/s a substep for each N: dt/m where free, else 0
     ck_Real *paired, *far_paired;
-    uint8_t *near; // [span] of a row: a bit for each of a vector that may touch
+    uint8_t *near, *near_before; // [span] of a row, [rows*span]: a bit for each of a vector that may touch
+    ck_NearPart *parts;          // [rows]
     ck_Real *state, *pairs;
 } ck_ExplicitCloth;
 

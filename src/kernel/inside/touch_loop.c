@@ -77,6 +77,12 @@ CK_INLINE ck_Lanes3 along_surface(ck_Lanes3 vector, ck_Lanes3 normal) {
     return ck_lanes3_subtract_scaled(vector, ck_lanes3_dot(vector, normal), normal);
 }
 
+// Faster than rounding, of what friction, m/s², takes within a substep; squared, which needs no root.
+CK_INLINE ck_LaneMask slides_along(ck_Lanes friction, ck_Lanes3 along, double dt) {
+    const ck_Lanes least = friction * (dt * 1e-9);
+    return ck_lanes_less(least * least, ck_lanes3_dot(along, along));
+}
+
 // What a surface leaves of an acceleration.
 typedef struct Held {
     ck_Lanes3 left, push; // m/s²; push: along the surface, without friction
@@ -91,16 +97,18 @@ CK_INLINE Held hold(const Surface *surface, ck_Lanes3 normal, ck_Lanes3 v, ck_La
     const ck_Lanes friction = surface->friction * press;
     const ck_LaneMask agrees = ck_lanes_less(none, ck_lanes3_dot(along, push));
     const ck_Lanes3 way = ck_lanes3_add_scaled(along, ck_lanes_choose(agrees, ck_lanes_all(0.5 * dt), none), push);
-    const ck_Lanes squared[] = {ck_lanes3_dot(along, along), ck_lanes3_dot(push, push), ck_lanes3_dot(way, way)};
-    ck_Lanes inverse[3];
-    ck_lanes_inverse_root(inverse, squared, 3);
+    const ck_Lanes pushed = ck_lanes3_dot(push, push);
     // without friction a push is never held
-    const ck_LaneMask holds = ck_lanes_less(squared[1], friction * friction);
-    const ck_Lanes share = ck_lanes_choose(holds, ck_lanes_all(1), friction * inverse[1]);
-    const ck_LaneMask slides = ck_lanes_less(friction * (dt * 1e-9), squared[0] * inverse[0]);
-    const ck_Lanes3 left = ck_lanes3_choose(slides, ck_lanes3_subtract_scaled(push, friction * inverse[2], way),
-                                            ck_lanes3_subtract_scaled(push, share, push));
-    return (Held){left, push, press, holds};
+    const ck_LaneMask holds = ck_lanes_less(pushed, friction * friction);
+    const ck_LaneMask slides = slides_along(friction, along, dt);
+    const ck_Lanes3 rubbed = ck_lanes3_subtract_scaled(push, friction * inverse_length(ck_lanes3_dot(way, way)), way);
+    Held held = {ck_lanes3_choose(slides, rubbed, (ck_Lanes3){none, none, none}), push, press, holds};
+    // what is only now pushed loose is rare: another root that most do without
+    const ck_Lanes starts = ck_lanes_choose(slides, none, ck_lanes_choose(holds, none, ck_lanes_all(1)));
+    if (!ck_lanes_any_beyond(starts, 0)) return held;
+    const ck_Lanes3 loose = ck_lanes3_subtract_scaled(push, friction * inverse_length(pushed), push);
+    held.left = ck_lanes3_choose(ck_lanes_less(none, starts), loose, held.left);
+    return held;
 }
 
 CK_INLINE ck_LaneMask leaves_fast(ck_Lanes3 v, ck_Lanes3 normal) {
@@ -119,13 +127,14 @@ CK_INLINE ck_Lanes3 filter(const Surface *surface, ck_Lanes3 normal, ck_Lanes3 v
 // Not 0 where friction stops or turns a slide within the substep; see stop_time.
 CK_INLINE ck_Lanes ends_within(ck_Lanes friction, ck_Lanes3 v, const Held *held, double dt) {
     const ck_Lanes none = {0}, one = ck_lanes_all(1);
-    const ck_Lanes squared = ck_lanes3_dot(v, v), inverse = inverse_length(squared);
-    const ck_Lanes pushed = ck_lanes3_dot(held->push, held->push), most = dt * (friction * friction - pushed);
-    const ck_Lanes stops =
-        ck_lanes_choose(ck_lanes_less(friction * (squared * inverse) + ck_lanes3_dot(v, held->push), most), one, none);
+    const ck_Lanes squared = ck_lanes3_dot(v, v), pushed = ck_lanes3_dot(held->push, held->push);
+    // friction·|v| below that
+    const ck_Lanes most = dt * (friction * friction - pushed) - ck_lanes3_dot(v, held->push);
+    const ck_Lanes below = ck_lanes_choose(ck_lanes_less(friction * friction * squared, most * most), one, none);
+    const ck_Lanes stops = ck_lanes_choose(ck_lanes_less(none, most), below, none);
     const ck_Lanes turns = ck_lanes_choose(ck_lanes_less(squared, -dt * ck_lanes3_dot(v, held->left)), one, none);
     const ck_Lanes ends = ck_lanes_choose(ck_lanes_less(pushed, friction * friction), stops, turns);
-    return ck_lanes_choose(ck_lanes_less(friction * (dt * 1e-9), squared * inverse), ends, none);
+    return ck_lanes_choose(slides_along(friction, v, dt), ends, none);
 }
 
 // Where a slide is after the substep; on a ball its speed follows from the work done, as work_over has it.
@@ -147,7 +156,7 @@ CK_INLINE void slide(const Surface *surface, ck_Lanes3 *x, ck_Lanes3 *v, ck_Lane
     const ck_Lanes rubbed = surface->friction * press * (length_squared * inverse_length(length_squared));
     const ck_Lanes worked = ck_lanes3_dot(*v, *v) + 2 * (pulled - rubbed);
     const ck_Lanes kept = ck_lanes_choose(ck_lanes_less(none, worked), worked, none);
-    const ck_Lanes scale = kept * inverse_length(kept) * inverse_length(turned_squared);
+    const ck_Lanes scale = kept * inverse_length(kept * turned_squared); // √kept / |turned|
     *x = ck_lanes3_choose(is_curved, ck_lanes3_subtract_scaled(to, gap, out), to);
     *v = ck_lanes3_choose(is_curved, ck_lanes3_scale(scale, turned), faster);
     *normal = ck_lanes3_choose(is_curved, out, surface->normal);
@@ -226,23 +235,29 @@ CK_INLINE void put_group(const ck_Touched *touch, const ck_Loose *loose, int at,
 }
 
 ck_TouchSlide CK_LOOP(ck_touch_slide);
-void CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, double *impulse) {
+bool CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, double *impulse) {
     const ck_Loose local = *all, *loose = &local;
+    const ck_Lanes none = {0};
     double sums[3 * CK_STRIPE] = {0};
+    ck_Lanes alone = none;
     for (int at = 0; at < loose->count; at += CK_LANES) {
         const Group start = {
             .x = load(loose->x, loose, at), .v = load(loose->v, loose, at), .a = load(loose->a, loose, at)};
         Group end = start;
-        const Surface surface = find_surface(touch, start.x, ck_near_way(start.v, start.a, touch->dt), &end.alone);
+        const Surface surface = find_surface(touch, start.x, ck_near_most(start.v, start.a, touch->dt), &end.alone);
         end.normal = surface.normal;
         if (!all_rest(touch, &surface, &end)) go(touch, &surface, &end);
         put_group(touch, loose, at, &start, &end, sums);
         store(loose->normal, loose, at, end.normal);
         ck_lanes_store(loose->curvature + at, surface.curvature);
         ck_lanes_store(loose->friction + at, surface.friction);
+        // what fills the last vector up weighs nothing
+        alone += ck_lanes_choose(ck_lanes_less(none, ck_lanes_load(loose->mass + at)), end.alone, none);
     }
     for (int axis = 0; axis < 3; axis++)
         for (int lane = 0; lane < CK_STRIPE; lane++) impulse[axis] += sums[axis * CK_STRIPE + lane];
+    // what is no number is alone, too
+    return ck_lanes_bits(ck_lanes_less(alone, 0.5 * ck_lanes_all(1))) != (1u << CK_LANES) - 1;
 }
 
 ck_TouchHold CK_LOOP(ck_touch_hold);
