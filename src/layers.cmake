@@ -20,9 +20,9 @@ function(clothcheck_layer name)
   target_compile_definitions(ck_${name} PRIVATE ${LAYER_DEFINITIONS})
   target_link_libraries(ck_${name} PUBLIC options ${LAYER_USES} PRIVATE ${LAYER_USES_INSIDE} ${LAYER_LIBRARIES})
   if(LAYER_VECTOR_SOURCES)
-    if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
-      target_compile_definitions(ck_${name} PRIVATE CK_HAS_X86_VECTORS)
-    endif()
+    foreach(vectors IN LISTS CLOTHCHECK_VECTORS)
+      target_compile_definitions(ck_${name} PRIVATE CK_HAS_${vectors})
+    endforeach()
     clothcheck_vectors(${name} "" ${LAYER_VECTOR_SOURCES})
   endif()
   if(LAYER_SINGLE_SOURCES)
@@ -33,13 +33,14 @@ function(clothcheck_layer name)
 endfunction()
 
 # The kinds of vectors; the program chooses when it runs.
-set(VECTORS plain)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
-  list(APPEND VECTORS v3 v4)
+  set(CLOTHCHECK_VECTORS plain v3 v4 CACHE STRING "kinds of vectors: plain, v3 with it, v4 with both")
   # whatever CFLAGS say, so that each kind is what it is called
   set(MACHINE_plain -march=x86-64 -mno-avx -mno-fma)
   set(MACHINE_v3 -march=x86-64-v3)
   set(MACHINE_v4 -march=x86-64-v4)
+else()
+  set(CLOTHCHECK_VECTORS plain)
 endif()
 
 # Sources of a layer as objects of their own, with a definition.
@@ -52,7 +53,7 @@ endmacro()
 
 # precision: nothing, or single_
 macro(clothcheck_vectors name precision)
-  foreach(vectors IN LISTS VECTORS)
+  foreach(vectors IN LISTS CLOTHCHECK_VECTORS)
     set(objects ck_${name}_${precision}${vectors})
     clothcheck_objects(${objects} CK_VECTORS=${precision}${vectors} ${ARGN})
     target_compile_definitions(${objects} PRIVATE

@@ -43,15 +43,18 @@ static double now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+// Without memory of its own: another thread may start a child meanwhile, and the sanitizers' locks of memory would be
+// held in that for ever.
 static size_t resident_bytes(pid_t child) {
-    char path[40];
+    char path[40], text[80] = "", *second;
     snprintf(path, sizeof path, "/proc/%d/statm", child);
-    FILE *file = fopen(path, "r");
-    if (!file) return 0;
-    unsigned long total, resident;
-    if (fscanf(file, "%lu %lu", &total, &resident) != 2) resident = 0;
-    fclose(file);
-    return resident * (size_t)sysconf(_SC_PAGESIZE);
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) return 0;
+    const ssize_t got = read(file, text, sizeof text - 1);
+    close(file);
+    if (got <= 0) return 0;
+    strtoul(text, &second, 10); // all that is mapped
+    return strtoul(second, NULL, 10) * (size_t)sysconf(_SC_PAGESIZE);
 }
 
 size_t ck_process_memory(void) {
@@ -251,22 +254,25 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     *result = (ck_ChildResult){0};
     int output = -1, wait_status = 0;
     struct rusage usage = {0};
-    const pid_t child = start(work, context, limits, &output);
-    if (child < 0) return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
     Tail *tail = calloc(1, sizeof *tail);
-    result->end = tail ? watch(child, output, tail, limits) : CK_CHILD_ABORTED;
+    if (!tail) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    const pid_t child = start(work, context, limits, &output);
+    if (child < 0) {
+        free(tail);
+        return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+    }
+    result->end = watch(child, output, tail, limits);
     // it is no longer waited for where it is stopped, and its group is its own as long as it is not waited for
     kill(-child, SIGKILL);
     kill(child, SIGKILL);
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
     if (limits->spawns) end_strays(child);
-    if (tail) drain(tail, output);
+    drain(tail, output);
     close(output);
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
-    if (tail) describe(result, wait_status, limits, tail);
-    ck_Status status = tail ? ck_child_check(error) : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    describe(result, wait_status, limits, tail);
     free(tail);
-    return status;
+    return ck_child_check(error);
 }
 
 typedef struct Crew {
