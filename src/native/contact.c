@@ -15,14 +15,33 @@
 ck_Status ck_contact_create(ck_Contact **contact, const ck_Model *model, double dt, ck_Error *error) {
     *contact = NULL;
     if (!model->collider_count) return CK_OK;
-    // motion stands behind it, so that it is freed with it
+    // sizes and motion stand behind it, so that they are freed with it
     const bool moves = model->terms & CK_TERM_MOVING_COLLIDERS;
-    *contact = calloc(1, sizeof **contact + (moves ? sizeof(ck_Motion) * (size_t)model->collider_count : 0));
+    *contact = calloc(1, sizeof **contact + (sizeof(double) + sizeof(ck_Motion)) * (size_t)model->collider_count);
     if (!*contact) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    **contact = (ck_Contact){.model = model, .dt = dt, .slack = 1e-9 * model->spacing};
-    if (moves) (*contact)->motion = (ck_Motion *)(*contact + 1);
+    **contact =
+        (ck_Contact){.model = model, .dt = dt, .slack = 1e-9 * model->spacing, .sizes = (double *)(*contact + 1)};
+    for (int i = 0; i < model->collider_count; i++)
+        if (model->colliders[i].shape != CK_PLANE)
+            (*contact)->sizes[i] = model->colliders[i].radius + ck_length(model->colliders[i].half);
+    if (moves) (*contact)->motion = (ck_Motion *)((*contact)->sizes + model->collider_count);
     if (moves) ck_contact_follow(*contact, 0);
     return CK_OK;
+}
+
+// True where all colliders are farther from x than so many m, and this is told without a root; never where they move.
+static inline bool is_far(const ck_Contact *contact, const double *x, double reach) {
+    if (contact->motion) return false;
+    for (int i = 0; i < contact->model->collider_count; i++) {
+        const ck_Collider *collider = &contact->model->colliders[i];
+        const double most = (reach + contact->sizes[i]) * (1 + 1e-9) + contact->slack;
+        double from[3];
+        ck_subtract(from, x, collider->point);
+        const bool is_beyond =
+            collider->shape == CK_PLANE ? ck_dot(from, collider->normal) > most : ck_dot(from, from) > most * most;
+        if (!is_beyond) return false;
+    }
+    return true;
 }
 
 static double next_jump(const ck_Contact *contact, double time) {
@@ -345,6 +364,9 @@ static inline __attribute__((always_inline)) bool impacts(const ck_Contact *cont
 }
 
 bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a) {
+    double way = 0;
+    for (int axis = 0; axis < 3; axis++) way += contact->dt * (fabs(v[axis]) + 0.5 * contact->dt * fabs(a[axis]));
+    if (is_far(contact, x, way)) return false;
     return contact->motion ? impacts(contact, x, v, a, true) : impacts(contact, x, v, a, false);
 }
 
@@ -393,6 +415,7 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, ck_P
 
 void ck_contact_project(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x) {
     int rounds = contact->model->collider_count > 1 ? PUSH_ROUNDS : 1;
+    if (is_far(contact, x, pressed->depth)) return;
     while (rounds-- && push_out(contact, mass, start, pressed, x))
         ;
 }

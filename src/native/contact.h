@@ -20,6 +20,7 @@ typedef struct ck_Contact {
     double dt;          // s, one substep
     double slack;       // m: closer than this is touching
     double impulse[3];  // N·s, of all colliders on the body since it was last cleared
+    double *sizes;      // [colliders] m: all of a solid is nearer to its point; of a plane 0
     ck_Motion *motion;  // [colliders]; NULL: all stay, and what follows is not read
     double elapsed;     // s of the substep, at which ck_contact_filter is asked
     double begun;       // s, of the substep
