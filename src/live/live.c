@@ -256,11 +256,10 @@ ck_Status ck_live_set_rate(ck_Live **live, double rate, ck_Error *error) {
     const ck_Engine *engines[CK_LIVE_ENGINES];
     ck_Settings wanted[CK_LIVE_ENGINES];
     const int named = ck_change_file_length(before->named);
-    const bool has_rate = before->scene.file->time.fps > 0;
     char change[60], *changes = strdup(before->named + named), *file = NULL;
     ck_Live *next = NULL;
     ck_Status status = CK_OK;
-    snprintf(change, sizeof change, has_rate ? "@time.fps=%.17g" : "@time.step=%.17g", has_rate ? rate : 1 / rate);
+    snprintf(change, sizeof change, "@time.fps=%.17g", rate);
     for (int i = 0; i < before->count; i++) {
         engines[i] = before->seats[i].shown.engine;
         wanted[i] = before->seats[i].wanted;

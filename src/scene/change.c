@@ -164,13 +164,32 @@ static bool replace(ck_Document *document, const yaml_node_t *node, const char *
     return fits;
 }
 
+// What the document has in the place of a key that it lacks; NULL: nothing.
+static const yaml_node_t *instead_of(const ck_Document *document, const char *key) {
+    for (const char *const(*row)[2] = document->kind->instead; row && **row; row++)
+        for (int i = 0; i < 2; i++)
+            if (!strcmp((*row)[i], key)) return ck_document_at(document, (*row)[1 - i]);
+    return NULL;
+}
+
+// Puts a key and its value in place of another's. False when out of memory.
+static bool replace_key(ck_Document *document, const yaml_node_t *node, const char *key, const char *value) {
+    const char *dot = strrchr(key, '.');
+    char *text;
+    if (asprintf(&text, "%s: %s", dot ? dot + 1 : key, value) < 0) return false;
+    const bool fits =
+        splice(document, byte_at(document, key_of(document, node)->start_mark), end_of(document, node), text);
+    free(text);
+    return fits;
+}
+
 ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Error *error) {
     char key[200], *value = strndup(change->value, (size_t)change->value_length), *nested = NULL;
     const char *rest;
     snprintf(key, sizeof key, "%.*s", change->key_length, change->key);
     bool fits = value != NULL;
     ck_Status status = CK_OK;
-    const yaml_node_t *node = deepest(document, key, &rest);
+    const yaml_node_t *node = deepest(document, key, &rest), *instead = *rest ? instead_of(document, key) : NULL;
     if (document->length > 1 && (document->text[0] == 0xff || document->text[0] == 0xfe))
         status =
             ck_fail(error, CK_BAD_INPUT, "%s: is in UTF-16; a scene with changes must be in UTF-8", document->path);
@@ -178,6 +197,8 @@ ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Err
         status = ck_fail(error, CK_BAD_INPUT, "%s: %s has no value; it must read @KEY=VALUE", document->path, key);
     else if (!*rest)
         fits = fits && replace(document, node, value);
+    else if (instead)
+        fits = fits && replace_key(document, instead, key, value);
     else if (node->type != YAML_MAPPING_NODE || strchr(rest, '['))
         status = ck_document_fail(document, node, error, "there is no place for %s here", key);
     else if (fits) {

@@ -25,9 +25,9 @@ bool ck_change_next(const char *word, int *place, ck_Change *change);
 // *words is as it was.
 bool ck_change_merge(char **words, const char *more);
 
-// Puts a value in place of that of a key, or beside what a mapping has already, into the document's text, whose lines
-// stay as they are but for the value. The tree is that of before: parse the text again.
-// Errors: CK_BAD_INPUT where there is no such place, CK_NO_MEMORY.
+// Puts a value in place of that of a key, or of the key that stands for it, or beside what a mapping has already, into
+// the document's text, whose lines stay as they are but for the value. The tree is that of before: parse the text
+// again. Errors: CK_BAD_INPUT where there is no such place, CK_NO_MEMORY.
 ck_Status ck_change_apply(ck_Document *document, const ck_Change *change, ck_Error *error);
 
 // What a word's changes add to its scene's name, of plain letters: "-stiffness_100-resolution_2". Returns name.

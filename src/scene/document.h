@@ -14,8 +14,9 @@
 
 // What a file is of, in the words of an error.
 typedef struct ck_DocumentKind {
-    const char *name;  // "scene"
-    const char *needs; // "name, a body and time"
+    const char *name;                // "scene"
+    const char *needs;               // "name, a body and time"
+    const char *const (*instead)[2]; // keys that stand for one another, to a row of NULL; NULL: there are none
 } ck_DocumentKind;
 
 typedef struct ck_Document {

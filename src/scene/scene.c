@@ -14,7 +14,8 @@
 // Aliases could make a small file describe an enormous scene; nobody needs them in one.
 static const cyaml_config_t cyaml = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_NO_ALIAS};
 
-static const ck_DocumentKind scene_kind = {"scene", "name, a body (cloth, rope, network or mesh) and time"};
+static const char *const instead[][2] = {{"time.step", "time.fps"}, {NULL, NULL}};
+static const ck_DocumentKind scene_kind = {"scene", "name, a body (cloth, rope, network or mesh) and time", instead};
 
 static const char *text_of(yaml_document_t *yaml, int node) {
     return (const char *)yaml_document_get_node(yaml, node)->data.scalar.value;

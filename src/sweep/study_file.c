@@ -11,7 +11,7 @@
 const char *const ck_study_runs[CK_STUDY_RUNS] = {"compare", "precision", "stability", "tune",
                                                   "needs",   "refine",    "conform"};
 
-static const ck_DocumentKind kind = {"study", "study, its name, and scenes"};
+static const ck_DocumentKind kind = {"study", "study, its name, and scenes", NULL};
 
 // What a key's value goes through.
 typedef struct Reader {

@@ -75,6 +75,30 @@ static void test_breaks(void **state) {
     }
 }
 
+// A key takes the place of the one that says the same otherwise, wherever that stands.
+static void test_instead(void **state) {
+    (void)state;
+    static const struct {
+        const char *time, *changes;
+        double step;
+    } cases[] = {{"{duration: 1, fps: 60}", "@time.step=0.005", 0.005},
+                 {"{fps: 60, duration: 1}", "@time.step=0.005@time.fps=50", 0.02},
+                 {"{duration: 1, step: 0.01}", "@time.fps=25", 0.04},
+                 {"\n  step: 0.01 # s\n  duration: 1", "@time.fps=25", 0.04},
+                 {"\n  duration: 1\n  step: 0.01", "@time.fps=25@time.duration=2", 0.04}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        ck_Scene scene;
+        ck_Error error = {0};
+        char text[400];
+        snprintf(text, sizeof text, "name: r\nrope: {particles: 3, spacing: 1, mass: 1}\ntime: %s\ndrag: 1\n",
+                 cases[i].time);
+        if (load(&scene, text, cases[i].changes, &error)) fail_msg("%s%s: %s", text, cases[i].changes, error.message);
+        assert_near(cases[i].changes, scene.file->time.step, cases[i].step, 1e-15);
+        assert_near("drag", scene.file->drag, 1, 0);
+        ck_scene_free(&scene);
+    }
+}
+
 // Values on lines of their own are replaced with these lines, and a key without a value gets one.
 static void test_blocks(void **state) {
     (void)state;
@@ -167,8 +191,9 @@ static void test_resolution(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_breaks),
-                                       cmocka_unit_test(test_blocks), cmocka_unit_test(test_names),
-                                       cmocka_unit_test(test_errors), cmocka_unit_test(test_resolution)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values),    cmocka_unit_test(test_breaks),
+                                       cmocka_unit_test(test_instead),   cmocka_unit_test(test_blocks),
+                                       cmocka_unit_test(test_names),     cmocka_unit_test(test_errors),
+                                       cmocka_unit_test(test_resolution)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
