@@ -14,16 +14,15 @@ CK_INLINE const ck_Seat *seat_at(const struct ck_ExplicitList *list, uint32_t of
     return (const ck_Seat *)((const char *)list->seats + offset);
 }
 
-// The ways of as many springs as there are lanes, from ends a to ends b, go to where their forces will be; returns l²,
-// m², and where they are damped v·way, m²/s.
-CK_INLINE ck_Lanes span(const struct ck_ExplicitList *list, const ck_Pack *pack, int first, double *ways,
+// The ways of as many springs as there are lanes, from ends a to ends b; returns l², m², and where they are damped
+// v·way, m²/s.
+CK_INLINE ck_Lanes span(const struct ck_ExplicitList *list, const ck_Pack *pack, int first, ck_Point *way,
                         ck_Lanes *along, const int terms) {
-    ck_Point way[CK_LANES], speed[CK_LANES];
+    ck_Point speed[CK_LANES];
     for (int i = 0; i < CK_LANES; i++) {
         const ck_Seat *a = seat_at(list, pack->a[first + i]), *b = seat_at(list, pack->b[first + i]);
         way[i] = ck_point_subtract(ck_point_load(b->x), ck_point_load(a->x));
         if (terms & DAMPED) speed[i] = ck_point_subtract(ck_point_load(b->predicted), ck_point_load(a->predicted));
-        ck_point_store(ways + i * CK_POINT, way[i]);
     }
     const ck_Lanes3 d = ck_points_across(way);
     if (terms & DAMPED) *along = ck_lanes3_dot(ck_points_across(speed), d);
@@ -39,10 +38,11 @@ CK_INLINE ck_Lanes value_of(const struct ck_ExplicitList *list, ck_SpringValue v
 CK_INLINE void pull_springs(const struct ck_ExplicitList *list, int pack, int first, const int terms) {
     double *force = list->force + CK_POINT * ((long)pack * CK_PACK + first);
     ck_Lanes squared[TOGETHER], along[TOGETHER], inverse[TOGETHER];
+    ck_Point ways[SPRINGS];
     double scales[SPRINGS];
     for (int i = 0; i < TOGETHER; i++)
-        squared[i] = span(list, &list->springs.packs[pack], first + i * CK_LANES, force + i * CK_LANES * CK_POINT,
-                          &along[i], terms);
+        squared[i] =
+            span(list, &list->springs.packs[pack], first + i * CK_LANES, ways + i * CK_LANES, &along[i], terms);
     ck_lanes_inverse_root(inverse, squared, TOGETHER);
     for (int i = 0; i < TOGETHER; i++) {
         const int lane = first + i * CK_LANES;
@@ -55,8 +55,7 @@ CK_INLINE void pull_springs(const struct ck_ExplicitList *list, int pack, int fi
                                     scale);
         ck_lanes_store(scales + i * CK_LANES, scale);
     }
-    for (int i = 0; i < SPRINGS; i++)
-        ck_point_store(force + i * CK_POINT, ck_point_scale(scales[i], ck_point_load(force + i * CK_POINT)));
+    for (int i = 0; i < SPRINGS; i++) ck_point_store(force + i * CK_POINT, ck_point_scale(scales[i], ways[i]));
 }
 
 CK_INLINE void pull_packs(const struct ck_ExplicitList *list, int chunk, const int terms) {
