@@ -286,7 +286,7 @@ class Live {
 			return make("tr", {}, name, ...Array.from({ length: 5 }, () => make("td", { className: "number" })));
 		}));
 		this.plots = [new Plot("sag / size", short, this.colors), new Plot("largest strain", percentOf, this.colors),
-			new Plot("distance to the first / size", short, this.colors)];
+			new Plot("distance to the first / size", short, this.colors), new Plot("ms a frame", short, this.colors)];
 		byId("plots").replaceChildren(...this.plots.map((plot) => plot.figure));
 	}
 
@@ -297,6 +297,7 @@ class Live {
 			this.plots[0].add(time, engines.map((one) => one.sag));
 			this.plots[1].add(time, engines.map((one) => one.strain));
 			this.plots[2].add(time, engines.map((one) => one.apart));
+			this.plots[3].add(time, engines.map((one) => one.cpu));
 		}
 		this.plottedFrame = this.frame.number;
 		const now = performance.now();

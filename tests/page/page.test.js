@@ -3,7 +3,7 @@
 //   CLOTHCHECK, CHROMIUM  programs;  SOURCES  the source tree;  SCREENSHOTS  where pictures are kept
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -569,6 +569,16 @@ test("a page of a study alone opens, too", async () => {
 	assert.deepEqual(errors, []);
 	await other.close();
 	rmSync(study, { recursive: true });
+});
+
+test("without scripts there are the results in words, and charts and tables beside the page", async () => {
+	const plain = await browser.newContext({ javaScriptEnabled: false }), other = await plain.newPage();
+	await other.goto(`file://${directory}/index.html`);
+	assert.ok(await other.locator("noscript li").first().isVisible());
+	const links = await other.locator("noscript a").evaluateAll((all) => all.map((link) => link.getAttribute("href")));
+	assert.ok(links.includes("charts/cloth_two_corners.cost.svg") && links.includes("metrics.csv"));
+	for (const link of links) assert.ok(statSync(join(directory, link)).size > 0, link);
+	await plain.close();
 });
 
 test("nothing was fetched, and the console is empty", () => assert.deepEqual(told, []));

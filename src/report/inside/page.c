@@ -242,7 +242,55 @@ static void choose_nonce(Page *page) {
     for (size_t i = 0; i < sizeof digest; i++) snprintf(page->nonce + 2 * i, 3, "%02x", digest[i]);
 }
 
+static void write_html(FILE *file, const char *text) {
+    for (; *text; text++) {
+        if (strchr("&<>\"", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+    }
+}
+
+static void link_charts(const Page *page, int scene) {
+    const char *name = scene < page->data->scene_count ? page->data->scenes[scene] : NULL;
+    bool is_first = true;
+    for (int i = 0; i < ck_chart_count(); i++) {
+        const ck_Chart *chart = ck_chart_at(i);
+        char file[200];
+        if (!page->drawn[scene * ck_chart_count() + i]) continue;
+        ck_chart_file(file, sizeof file, chart, name);
+        fprintf(page->file, "%s<a href=\"" CK_CHART_DIRECTORY "/%s.svg\">", is_first ? "<li>" : ", ", file);
+        write_html(page->file, name ? name : "all scenes");
+        fprintf(page->file, ": ");
+        write_html(page->file, chart->title);
+        fprintf(page->file, "</a>");
+        is_first = false;
+    }
+    if (!is_first) fprintf(page->file, "</li>\n");
+}
+
+// For who runs no scripts: results in words, and the charts and tables that lie beside the page.
+static void write_plain(const Page *page) {
+    fprintf(page->file, "<noscript>\n<h2>What to know</h2>\n<ul>\n");
+    for (int i = 0; i < page->findings.count; i++) {
+        fprintf(page->file, "<li>");
+        write_html(page->file, page->findings.items[i].text);
+        fprintf(page->file, "</li>\n");
+    }
+    fprintf(page->file, "</ul>\n<h2>Charts</h2>\n<ul>\n");
+    for (int scene = page->data->scene_count; scene >= 0; scene--) link_charts(page, scene);
+    fprintf(page->file, "</ul>\n<h2>Tables</h2>\n<ul>\n");
+    for (int i = 0; i < CK_REPORT_LAYOUTS; i++) {
+        if (!ck_report_table(page->data, i)) continue;
+        fprintf(page->file, "<li><a href=\"%s\">%s</a>: ", ck_layouts[i].file, ck_layouts[i].file);
+        write_html(page->file, ck_layouts[i].about);
+        fprintf(page->file, "</li>\n");
+    }
+    fprintf(page->file, "</ul>\n</noscript>\n");
+}
+
 static ck_Status write_part(void *context, const char *word, ck_Error *error) {
+    if (!strcmp(word, "plain")) write_plain(context);
     return strcmp(word, "report") ? CK_OK : write_report(context, error);
 }
 
