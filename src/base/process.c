@@ -254,24 +254,21 @@ ck_Status ck_child_run(ck_ChildResult *result, void (*work)(void *), void *conte
     *result = (ck_ChildResult){0};
     int output = -1, wait_status = 0;
     struct rusage usage = {0};
-    Tail *tail = calloc(1, sizeof *tail);
-    if (!tail) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    // on the stack: see resident_bytes
+    Tail tail;
+    tail.length = 0;
     const pid_t child = start(work, context, limits, &output);
-    if (child < 0) {
-        free(tail);
-        return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
-    }
-    result->end = watch(child, output, tail, limits);
+    if (child < 0) return ck_fail(error, CK_IO, "cannot start a run: %s", strerror(errno));
+    result->end = watch(child, output, &tail, limits);
     // it is no longer waited for where it is stopped, and its group is its own as long as it is not waited for
     kill(-child, SIGKILL);
     kill(child, SIGKILL);
     while (wait4(child, &wait_status, 0, &usage) < 0 && errno == EINTR) continue;
     if (limits->spawns) end_strays(child);
-    drain(tail, output);
+    drain(&tail, output);
     close(output);
     result->peak_rss_bytes = (size_t)usage.ru_maxrss << 10;
-    describe(result, wait_status, limits, tail);
-    free(tail);
+    describe(result, wait_status, limits, &tail);
     return ck_child_check(error);
 }
 
