@@ -35,7 +35,7 @@ static int run(const ck_Command *command, int argc, char **argv) {
 const ck_Command ck_command_demo = {
     .name = "demo",
     .arguments = "",
-    .about = "three scenes, the page and the answer, in about 20 s",
+    .about = "three scenes, the page and the answer, in half a minute",
     .help = "Runs a rope, a hung cloth and a cloth on a ball with the engines that answer in time, says which is the "
             "cheapest\nwithin 1 %, and writes the CSVs and the page into --out.",
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_RUNS | CK_TAKES_TIMING | CK_TAKES_PATIENCE | CK_TAKES_JOBS |
