@@ -33,22 +33,25 @@ typedef struct ck_ProjectionRule {
 
 typedef struct ck_ProjectedCloth ck_ProjectedCloth;
 
-// True where the kernel takes a model: a regular cloth without bending springs and colliders.
+// True where the kernel takes a model: a regular cloth without bending springs, and colliders that stay.
 bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
 
 // Where a cloth is at the start of a substep.
 //   position, velocity, before  [3*n] m, m/s, and m/s a substep earlier
 //   inverse_mass                [n] 1/kg, 0 where pinned
+//   beside                      what its particles may touch, in their order; NULL: nothing
 typedef struct ck_ProjectionSetup {
     const ck_Loops *loops;
     const ck_Model *model;
     const ck_RowSprings *springs;
     const ck_ProjectionRule *rule;
     const double *position, *velocity, *before, *inverse_mass;
+    const struct ck_RowContact *beside;
 } ck_ProjectionSetup;
 
 // In the precision of the loops: in single precision, places are told from an origin that moves with the cloth.
-// Memory: 10 doubles a particle, and one a spring for XPBD with several sweeps. Errors: CK_NO_MEMORY. Free with
+// Surfaces are copied. Memory: 10 doubles a particle, 8 more where there are surfaces, and one a spring for XPBD with
+// several sweeps. Errors: CK_NO_MEMORY. Free with
 // ck_projection_destroy.
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
@@ -60,5 +63,8 @@ void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *w
 
 // [3*n] m, m/s, m/s: before is the velocity of the last substep but one.
 void ck_projection_read(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before);
+
+// What surfaces have given the cloth in the last call of ck_projection_step, [3] N·s.
+void ck_projection_impulse(const ck_ProjectedCloth *cloth, double *impulse);
 
 #endif

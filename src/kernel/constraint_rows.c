@@ -20,7 +20,7 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
     const double rate = rate_of(cloth);
     static const double none[3];
     ck_rows_store(&cloth->rows, position, cloth->x, none);
-    ck_rows_store(&cloth->rows, velocity, cloth->start, none);
+    ck_rows_store(&cloth->rows, velocity, cloth->from, none);
     ck_rows_store(&cloth->rows, before, cloth->before, none);
     for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i++) {
         velocity[i] = rate * (position[i] - velocity[i]);
@@ -89,6 +89,7 @@ static void place_arrays(ck_ProjectedCloth *cloth) {
     cloth->start = cloth->state + 3 * size;
     cloth->before = cloth->state + 6 * size;
     cloth->is_free = cloth->state + 9 * size;
+    cloth->from = cloth->start;
     cloth->kept = CK_IS_SINGLE ? cloth->state + 10 * size : NULL;
     for (int direction = 0; direction < CK_DIRECTIONS; direction++)
         cloth->stripes[direction] = (ck_Stripe *)cloth->springs + direction * cloth->rows.span;

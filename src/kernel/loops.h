@@ -12,6 +12,7 @@
 struct ck_ExplicitCloth;
 struct ck_ExplicitList;
 struct ck_ProjectedCloth;
+struct ck_RowContact;
 struct ck_SweepList;
 struct ck_Visits;
 
@@ -27,6 +28,8 @@ typedef struct ck_NearSurface {
     double point[3], normal[3], axes[3][3], half[3], radius; // m
     double margin; // m, closer than which is touching, and how far it moves in a substep
     double friction;
+    bool moves;
+    double velocity[3], acceleration[3], way[3]; // m/s and m/s² from there on, m in the whole substep
 } ck_NearSurface;
 
 // Particles that are followed by themselves, coordinate by coordinate: [3*stride], and [stride] of what is one number.
@@ -52,6 +55,19 @@ typedef struct ck_Touched {
 typedef bool ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
 typedef void ck_TouchHold(double dt, const ck_Loose *loose);
 
+// Follows one particle at a time where no loop does, for bodies whose constraints are projected. Called from several
+// threads at once.
+typedef struct ck_Follower {
+    void *state;
+    // One that may meet a surface on its way from x at a mean velocity v, under a field, m/s², of its own: moves it
+    // over its impacts, and gives the mean velocity that it goes on from. False where it meets none: all is as it was.
+    //   impulse  in-out, [3] N·s
+    bool (*meet)(void *state, int particle, const double *field, double *x, double *v, double *impulse);
+    // One that may be inside: out of it, with what friction holds of its way from a place; see row_contact.h.
+    void (*press)(void *state, int particle, const double *from, double *depth, double *held, double *x,
+                  double *impulse);
+} ck_Follower;
+
 // Which particles of a row may come to touch one within a substep; see near_loop.c.
 typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
                         uint8_t *near);
@@ -62,6 +78,12 @@ typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const c
                           uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const struct ck_Visits *visits);
+// A row's flight to the start of a substep's sweeps, and what surfaces push it by in a sweep; see row_contact_loop.c.
+typedef void ck_RowFly(const struct ck_ProjectedCloth *cloth, int row, bool is_last);
+typedef bool ck_RowPress(const struct ck_RowContact *contact, int row); // true where anything was
+// Beside a list: a bit for each of a row of eight that its follower is to ask whether it meets a surface on its way,
+// from x at a speed way/dt under a field gain/dt².
+typedef unsigned ck_RowMeets(const struct ck_RowContact *contact, int row);
 // A sweep over packs of springs; see sweep_list_loop.h.
 typedef void ck_SweepPacks(const struct ck_SweepList *list, bool is_turned);
 // Products with a sum each, as many as it can a second; returns how many there were.
@@ -80,6 +102,9 @@ typedef struct ck_Loops {
     ck_ListChunk *list_chunk;
     ck_NearChunk *near_chunk;
     ck_ProjectionVisits *projection_visits;
+    ck_RowFly *row_fly;
+    ck_RowPress *row_press;
+    ck_RowMeets *row_meets;
     ck_SweepPacks *sweep_packs;
     ck_Peak *peak;
 } ck_Loops;

@@ -37,9 +37,11 @@ static void run_down(void *state, long block, int wave) {
         const int row = wave - LAG * i;
         const long sweep = block * cloth->depth + i;
         if (row < 0 || row >= rows || sweep >= cloth->sweeps) continue;
-        const bool begins = sweep % cloth->rule.iterations == 0;
-        visits.at[visits.count++] =
-            (ck_Visit){sweep, row, {begins && row == 0 ? 0 : -1, begins && row + 1 < rows ? row + 1 : -1}};
+        const bool begins = sweep % cloth->rule.iterations == 0, is_late = cloth->rule.projection == CK_PROJECT_SPRINGS;
+        visits.at[visits.count++] = (ck_Visit){sweep,
+                                               row,
+                                               {begins && row == 0 ? 0 : -1, begins && row + 1 < rows ? row + 1 : -1},
+                                               {row - is_late, is_late && row + 1 == rows ? row : -1}};
     }
     cloth->loops->projection_visits(cloth, &visits);
 }
@@ -89,16 +91,23 @@ static int place_of(const BothWays *ways, const Stage *stage, int sweep) {
     return stage->is_out ? ways->places - 1 - gone : gone;
 }
 
-static ck_Visit visit_upper(const BothWays *ways, long sweep, int place) {
+static ck_Visit visit_upper(const BothWays *ways, long sweep, int place, bool is_out) {
     const bool begins = sweep % (ways->in + ways->out) == 0;
-    return (ck_Visit){sweep, place, {begins && place == 0 ? 0 : -1, begins ? place + 1 : -1}};
+    return (ck_Visit){sweep,
+                      place,
+                      {begins && place == 0 ? 0 : -1, begins ? place + 1 : -1},
+                      {place + is_out, is_out && place == 0 ? 0 : -1}};
 }
 
-// The upper half, where there is one, has begun the row that both share.
-static ck_Visit visit_lower(const BothWays *ways, long sweep, int place) {
+// The upper half, where there is one, has begun the row that both share, and on the way back is the last to leave it.
+static ck_Visit visit_lower(const BothWays *ways, long sweep, int place, bool is_out) {
     const int row = ways->cloth->rows.rows - 1 - place;
     const bool begins = sweep % (ways->in + ways->out) == 0 && (row > ways->upper || ways->upper == 0);
-    return (ck_Visit){sweep, row, {begins ? row : -1, -1}};
+    const bool leaves = is_out ? row > ways->upper || ways->upper == 0 : row == ways->upper;
+    return (ck_Visit){sweep,
+                      row,
+                      {begins ? row : -1, -1},
+                      {!is_out && row + 1 < ways->cloth->rows.rows ? row + 1 : -1, leaves ? row : -1}};
 }
 
 static void run_both_ways(void *state, long step, bool runs_upper, bool runs_lower) {
@@ -107,8 +116,9 @@ static void run_both_ways(void *state, long step, bool runs_upper, bool runs_low
     ck_Visits visits = {.is_turned = stage.is_out};
     for (int i = stage.first; i < stage.end; i++) {
         const int place = place_of(ways, &stage, i);
-        if (runs_upper && place < ways->upper) visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place);
-        if (runs_lower) visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place);
+        if (runs_upper && place < ways->upper)
+            visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place, stage.is_out);
+        if (runs_lower) visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place, stage.is_out);
     }
     ways->cloth->loops->projection_visits(ways->cloth, &visits);
 }

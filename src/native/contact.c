@@ -363,11 +363,23 @@ static inline __attribute__((always_inline)) bool impacts(const ck_Contact *cont
     return -ck_dot(speed, normal) > 2 * fabs(ck_dot(seen.a, normal)) * contact->dt;
 }
 
-bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a) {
+static bool hits(const ck_Contact *contact, const double *x, const double *v, const double *a) {
     double way = 0;
     for (int axis = 0; axis < 3; axis++) way += contact->dt * (fabs(v[axis]) + 0.5 * contact->dt * fabs(a[axis]));
     if (is_far(contact, x, way)) return false;
     return contact->motion ? impacts(contact, x, v, a, true) : impacts(contact, x, v, a, false);
+}
+
+bool ck_contact_meet(ck_Contact *contact, double mass, const double *field, double *x, double *v) {
+    // the mean velocity stands in the middle of the substep: half of it earlier is the start
+    double speed[3] = {v[0], v[1], v[2]};
+    ck_add_scaled(speed, -0.5 * contact->dt, field);
+    if (!hits(contact, x, speed, field)) return false;
+    ck_contact_advance(contact, mass, x, speed, field);
+    // and the next one's mean velocity is this one's end velocity and half a substep more
+    memcpy(v, speed, sizeof speed);
+    ck_add_scaled(v, -0.5 * contact->dt, field);
+    return true;
 }
 
 // Takes of a way along a surface what friction holds. Along where it is now: what was held before, elsewhere on a ball,
@@ -383,7 +395,7 @@ static void hold(ck_Pressed *pressed, double friction, const double *along, cons
     ck_add_scaled(pressed->held, 1, sliding);
 }
 
-// One round of ck_contact_project; false where nothing was inside.
+// One round of ck_contact_project; false where nothing was inside, but for rounding.
 static bool push_out(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x) {
     bool pushed = false;
     for (int i = 0; i < contact->model->collider_count; i++) {
@@ -396,7 +408,8 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, ck_P
         if (!(gap < pressed->depth)) continue;
         memcpy(before, x, sizeof before);
         if (gap < 0) {
-            pushed = true;
+            // by rounding alone, nothing is pushed into another
+            pushed |= gap < -1e-3 * contact->slack;
             pressed->depth -= gap;
             ck_add_scaled(x, -gap, normal);
         }

@@ -57,8 +57,9 @@ typedef struct ck_Pressed {
 // in all; a sweep that is held to its own push alone lets creep what others pull. Cost: one gap a collider.
 void ck_contact_project(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x);
 
-// True where a particle on its way from x with speed v under a, as in ck_contact_advance, hits a collider faster than
-// what counts as rest.
-bool ck_contact_impacts(const ck_Contact *contact, const double *x, const double *v, const double *a);
+// For those methods, over a substep's way at a mean velocity v, m/s, under a field, m/s²: where a particle hits a
+// collider faster than what counts as rest, moves x over all impacts on the way, and gives the mean velocity with which
+// it goes on. Else false, and all is as it was.
+bool ck_contact_meet(ck_Contact *contact, double mass, const double *field, double *x, double *v);
 
 #endif

@@ -20,7 +20,7 @@ static void speeds(const ck_Native *native, int particle, double *drift, double 
 bool ck_leapfrog_substep(ck_Native *native, bool (*solve)(ck_Native *native)) {
     const ck_Model *model = native->model;
     const double dt = native->dt, apart = between(native), keep = 1 - 0.5 * model->drag * apart,
-                 slow = 1 / (1 + 0.5 * model->drag * apart);
+                 slow = 1 / (1 + 0.5 * model->drag * apart), rate = 1 / dt;
     ck_native_start_substep(native);
     ck_native_meet(native, speeds);
     memcpy(native->other_velocity, native->velocity, 3 * sizeof(double) * (size_t)model->particle_count);
@@ -29,22 +29,23 @@ bool ck_leapfrog_substep(ck_Native *native, bool (*solve)(ck_Native *native)) {
         double field[3];
         const double *v = native->velocity + 3 * i;
         ck_model_field(model, i, field);
-        if (native->contact && i < ck_model_cloth_count(model)) {
+        if (native->beside && i < ck_model_cloth_count(model)) {
             double next[3], change[3];
             for (int axis = 0; axis < 3; axis++) {
                 next[axis] = slow * (keep * v[axis] + apart * field[axis]);
                 change[axis] = (next[axis] - v[axis]) / apart;
             }
-            ck_native_move(native, i, next, change);
+            ck_native_aim(native, i, next, change);
         } else {
             for (int axis = 0; axis < 3; axis++)
                 native->position[3 * i + axis] += dt * slow * (keep * v[axis] + apart * field[axis]);
         }
     }
+    if (native->beside) ck_native_fly(native);
     ck_native_drive(native);
     bool solved = solve(native);
     for (int i = 0; i < 3 * model->particle_count; i++)
-        native->velocity[i] = (native->position[i] - native->origin[i]) / dt;
+        native->velocity[i] = rate * (native->position[i] - native->origin[i]);
     ck_native_drive_speed(native);
     native->last = dt;
     return solved;

@@ -3,7 +3,9 @@
 #include "constraint_kernel.h"
 #include "explicit.h"
 #include "loops.h"
+#include "near_surfaces.h"
 #include "path.h"
+#include "row_contact.h"
 #include "sweep_list.h"
 #include "vector.h"
 
@@ -39,9 +41,7 @@ ck_Status ck_native_create(ck_Native **out, const ck_Model *model, const ck_Sett
     if (!status) status = ck_rigid_contact_create(&native->rigid, model, native->dt, error);
     if (!status) status = ck_waves_create(&native->waves, (int)used->threads, error);
     native->origin = native->contact ? calloc(vectors, sizeof(double)) : native->start;
-    if (native->contact) native->pressed = calloc((size_t)model->particle_count, sizeof *native->pressed);
-    if ((!native->origin || (native->contact && !native->pressed)) && !status)
-        status = ck_fail(error, CK_NO_MEMORY, "out of memory");
+    if (!native->origin && !status) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (status) {
         ck_native_destroy(native);
         return status;
@@ -59,7 +59,7 @@ void ck_native_destroy(void *state) {
     if (!native) return;
     if (native->contact) free(native->origin);
     free(native->contact);
-    free(native->pressed);
+    ck_row_contact_destroy(native->beside);
     ck_rigid_contact_destroy(native->rigid);
     ck_waves_destroy(native->waves);
     ck_projection_destroy(native->cloth);
@@ -114,6 +114,7 @@ void ck_native_set_step(ck_Native *native, double dt) {
 
 void ck_native_start_frame(ck_Native *native) {
     if (native->contact) memset(native->contact->impulse, 0, sizeof native->contact->impulse);
+    if (native->beside) ck_row_contact_forget_impulse(native->beside);
 }
 
 void ck_native_start_substep(ck_Native *native) {
@@ -122,7 +123,11 @@ void ck_native_start_substep(ck_Native *native) {
     if (native->contact && native->contact->motion) ck_contact_follow(native->contact, ck_native_time(native));
     if (!native->contact) return;
     memcpy(native->origin, native->start, bytes);
-    memset(native->pressed, 0, sizeof *native->pressed * (size_t)native->model->particle_count);
+    if (!native->beside) return;
+    native->beside->touched.dt = native->dt;
+    if (!native->contact->motion) return;
+    ck_near_surfaces(ck_row_contact_surfaces(native->beside, false), native->contact);
+    ck_near_surfaces_at_end(ck_row_contact_surfaces(native->beside, true), native->contact);
 }
 
 void ck_native_drive(ck_Native *native) {
@@ -148,30 +153,76 @@ void ck_native_contact(const void *state, double *force) {
         force[axis] = native->contact ? native->contact->impulse[axis] / native->model->step : 0;
 }
 
-void ck_native_move(ck_Native *native, int particle, const double *next, const double *field) {
+// Over the impacts on its way, if there are any.
+static void meet(ck_Native *native, int particle, const double *next, const double *field) {
     double *x = native->position + 3 * particle, *origin = native->origin + 3 * particle, v[3];
-    // the mean velocity stands in the middle of the substep: half of it earlier is the start
     memcpy(v, next, sizeof v);
-    ck_add_scaled(v, -0.5 * native->dt, field);
-    if (!ck_contact_impacts(native->contact, x, v, field)) {
+    if (!ck_contact_meet(native->contact, native->model->mass[particle], field, x, v)) {
         ck_add_scaled(x, native->dt, next);
         return;
     }
-    ck_contact_advance(native->contact, native->model->mass[particle], x, v, field);
-    // and the next one's mean velocity is this one's end velocity and half a substep more
-    ck_add_scaled(v, -0.5 * native->dt, field);
     memcpy(origin, x, 3 * sizeof(double));
     ck_add_scaled(origin, -native->dt, v);
     memcpy(native->other_velocity + 3 * particle, v, sizeof v);
     ck_add_scaled(native->other_velocity + 3 * particle, -native->dt, field);
 }
 
+// Where a particle's numbers stand in tiles of eight.
+static long tile_of(int particle) {
+    return (long)particle / CK_STRIPE * 3 * CK_STRIPE + particle % CK_STRIPE;
+}
+
+void ck_native_aim(ck_Native *native, int particle, const double *next, const double *field) {
+    const double dt = native->dt;
+    for (int axis = 0; axis < 3; axis++) {
+        const long at = tile_of(particle) + axis * CK_STRIPE;
+        native->beside->gain[at] = dt * dt * field[axis];
+        native->beside->way[at] = dt * (next[axis] - 0.5 * dt * field[axis]);
+    }
+}
+
+static void fly(ck_Native *native, int particle, bool may_meet) {
+    const double dt = native->dt;
+    double way[3], gain[3], next[3], field[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const long at = tile_of(particle) + axis * CK_STRIPE;
+        gain[axis] = native->beside->gain[at];
+        way[axis] = native->beside->way[at] + 0.5 * gain[axis];
+    }
+    if (!may_meet) {
+        ck_add_scaled(native->position + 3 * particle, 1, way);
+        return;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        next[axis] = way[axis] / dt;
+        field[axis] = gain[axis] / (dt * dt);
+    }
+    meet(native, particle, next, field);
+}
+
+void ck_native_fly(ck_Native *native) {
+    ck_RowContact *beside = native->beside;
+    const ck_Loops *loops = ck_native_loops(native);
+    const int particles = ck_model_cloth_count(native->model);
+    ck_row_contact_take(beside->x, native->position, particles);
+    for (int row = 0; row < beside->rows.rows; row++) {
+        const unsigned bits = loops->row_meets(beside, row);
+        ck_row_contact_begin(beside, row);
+        for (int lane = 0; lane < CK_STRIPE && CK_STRIPE * row + lane < particles; lane++)
+            if (native->inverse_mass[CK_STRIPE * row + lane] > 0) fly(native, CK_STRIPE * row + lane, bits >> lane & 1);
+    }
+    ck_row_contact_take(beside->from, native->origin, particles);
+}
+
 void ck_native_project(ck_Native *native) {
+    ck_RowContact *beside = native->beside;
     if (native->rigid) ck_rigid_contact_project(native->rigid, native);
-    for (int i = 0; i < ck_model_cloth_count(native->model) && native->contact; i++)
-        if (native->inverse_mass[i] > 0)
-            ck_contact_project(native->contact, native->model->mass[i], native->origin + 3 * i, &native->pressed[i],
-                               native->position + 3 * i);
+    if (!beside) return;
+    const ck_Loops *loops = ck_native_loops(native);
+    const int particles = ck_model_cloth_count(native->model);
+    ck_row_contact_take(beside->x, native->position, particles);
+    for (int row = 0; row < beside->rows.rows; row++)
+        if (loops->row_press(beside, row)) ck_row_contact_give(beside, row, native->position, particles);
 }
 
 void ck_native_meet(ck_Native *native,

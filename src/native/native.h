@@ -8,6 +8,7 @@
 #include "rigid_contact.h"
 
 struct ck_ProjectedCloth;
+struct ck_RowContact;
 struct ck_SweepList;
 struct ck_Waves;
 
@@ -29,7 +30,7 @@ typedef struct ck_Native {
     double *compliance, *gamma;      // [springs] XPBD's α̃ and γ̃, else NULL
     double *bending;                 // [3*hinges] XPBD's multipliers of hinges, N·s²; NULL without
     ck_Contact *contact;             // NULL without colliders
-    ck_Pressed *pressed;             // [n] in the substep; NULL without
+    struct ck_RowContact *beside;    // of a position-based method, for its list of springs; NULL without
     ck_RigidContact *rigid;          // NULL without rigid bodies
     struct ck_Waves *waves;          // NULL: one thread
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
@@ -99,9 +100,11 @@ void ck_native_release(void *state, int particle);
 // The mean force of the colliders on the body over the last frame, [3] N.
 void ck_native_contact(const void *state, double *force);
 
-// For position-based methods: moves a particle by one substep at the mean velocity next of that substep, [3] m/s, or
-// over the impacts on its way, where field, [3] m/s², acts in between; these also set its origin.
-void ck_native_move(ck_Native *native, int particle, const double *next, const double *field);
+// For position-based methods where there are colliders: says that a particle is to move by one substep at the mean
+// velocity next of that substep, [3] m/s, with field, [3] m/s², in between. Then moves all that were aimed; what meets
+// a collider over its impacts, which also set its origin.
+void ck_native_aim(ck_Native *native, int particle, const double *next, const double *field);
+void ck_native_fly(ck_Native *native);
 
 // Where there are rigid bodies: their impulses, with what is to move each particle in the substep, [3] m/s, and its
 // speed at its start given by a function, and how bodies turn.

@@ -79,7 +79,7 @@ static void speeds(const ck_Native *native, int particle, double *drift, double 
 // Drag comes last: before the sweeps it would also ease gravity's push, and a body at rest would hang too high.
 static void substep(ck_Native *native) {
     const ck_Model *model = native->model;
-    const double dt = native->dt, keep = 1 / (1 + model->drag * dt);
+    const double dt = native->dt, rate = 1 / (1 + model->drag * dt) / dt;
     ck_native_start_substep(native);
     ck_native_meet(native, speeds);
     memset(native->multiplier, 0, sizeof(double) * (size_t)model->spring_count);
@@ -94,20 +94,21 @@ static void substep(ck_Native *native) {
         ck_model_field(model, i, field);
         // without air these stay 0
         ck_add_scaled(field, 1, native->acceleration + 3 * i);
-        if (native->contact && i < ck_model_cloth_count(model)) {
+        if (native->beside && i < ck_model_cloth_count(model)) {
             double next[3];
             memcpy(next, native->velocity + 3 * i, sizeof next);
             ck_add_scaled(next, dt, field);
-            ck_native_move(native, i, next, field);
+            ck_native_aim(native, i, next, field);
         } else {
             ck_add_scaled(native->position + 3 * i, dt, native->velocity + 3 * i);
             ck_add_scaled(native->position + 3 * i, dt * dt, field);
         }
     }
+    if (native->beside) ck_native_fly(native);
     ck_native_drive(native);
     ck_native_sweep(native, CK_PROJECT_SPRINGS, sweep, native->bending ? sweep_hinges : NULL);
     for (int i = 0; i < 3 * model->particle_count; i++)
-        native->velocity[i] = keep * (native->position[i] - native->origin[i]) / dt;
+        native->velocity[i] = rate * (native->position[i] - native->origin[i]);
     ck_native_drive_speed(native);
 }
 

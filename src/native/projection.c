@@ -1,10 +1,53 @@
 #include "projection.h"
 
+#include "follower.h"
+#include "near_surfaces.h"
+#include "row_contact.h"
 #include "sweep_list.h"
+
+#include <stdlib.h>
 
 static ck_SweepRule rule_of(const ck_Native *native, ck_Projection projection) {
     return (ck_SweepRule){projection,           native->iterations, native->used.relaxation,
                           native->inverse_mass, native->compliance, native->gamma};
+}
+
+// Where there are colliders, contact beside the list of springs, whose surfaces and masses serve rows, too.
+static ck_Status lay_beside(ck_Native *native, ck_Error *error) {
+    const ck_Model *model = native->model;
+    const int particles = ck_model_cloth_count(model);
+    double *mass = malloc(sizeof *mass * (size_t)particles + 1);
+    ck_NearSurface *surfaces = malloc(sizeof *surfaces * (size_t)model->collider_count + 1);
+    ck_Status status = mass && surfaces ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
+    for (int i = 0; i < particles && !status; i++) mass[i] = native->inverse_mass[i] > 0 ? model->mass[i] : 0;
+    if (!status) {
+        ck_near_surfaces(surfaces, native->contact);
+        const ck_Touched touched = {surfaces, model->collider_count, native->dt, native->contact->slack};
+        ck_RowContact *beside;
+        status = ck_row_contact_create(
+            &beside, &(ck_RowContactSetup){touched, ck_native_follower(native), mass, particles}, error);
+        if (!status) {
+            ck_row_contact_destroy(native->beside);
+            native->beside = beside;
+        }
+    }
+    free(mass);
+    free(surfaces);
+    return status;
+}
+
+static ck_Status lay_in_rows(ck_Native *native, const ck_ProjectionRule *rule, const ck_RowSprings *springs,
+                             ck_Error *error) {
+    const ck_ProjectionSetup setup = {.loops = ck_native_loops(native),
+                                      .model = native->model,
+                                      .springs = springs,
+                                      .rule = rule,
+                                      .position = native->position,
+                                      .velocity = native->velocity,
+                                      .before = native->other_velocity,
+                                      .inverse_mass = native->inverse_mass,
+                                      .beside = native->beside};
+    return ck_projection_create(&native->cloth, &setup, error);
 }
 
 ck_Status ck_native_lay_out(ck_Native *native, const ck_ProjectionRule *rule, ck_Error *error) {
@@ -12,16 +55,12 @@ ck_Status ck_native_lay_out(ck_Native *native, const ck_ProjectionRule *rule, ck
     const ck_SweepRule sweeps = rule_of(native, rule->projection);
     ck_projection_destroy(native->cloth);
     native->cloth = NULL;
-    if (ck_projection_fits(native->model, &springs)) {
-        const ck_ProjectionSetup setup = {
-            ck_native_loops(native), native->model,       &springs, rule, native->position, native->velocity,
-            native->other_velocity,  native->inverse_mass};
-        return ck_projection_create(&native->cloth, &setup, error);
-    }
-    if (native->sweeps)
-        ck_sweep_list_set(native->sweeps, native->model, &sweeps);
-    else
+    ck_Status status = native->contact ? lay_beside(native, error) : CK_OK;
+    if (status) return status;
+    if (ck_projection_fits(native->model, &springs)) return lay_in_rows(native, rule, &springs, error);
+    if (!native->sweeps)
         return ck_sweep_list_create(&native->sweeps, ck_native_loops(native), native->model, &sweeps, error);
+    ck_sweep_list_set(native->sweeps, native->model, &sweeps);
     return CK_OK;
 }
 
@@ -61,9 +100,11 @@ ck_StepResult ck_native_step_frame(ck_Native *native, void (*substep)(ck_Native 
     if (native->cloth) {
         ck_projection_step(native->cloth, native->substeps, native->waves);
         ck_projection_read(native->cloth, native->position, native->velocity, native->other_velocity);
+        if (native->contact) ck_projection_impulse(native->cloth, native->contact->impulse);
     } else {
         ck_native_start_frame(native);
         for (uint32_t i = 0; i < native->substeps; i++) substep(native);
+        if (native->beside) ck_row_contact_impulse(native->beside, native->contact->impulse);
     }
     return ck_native_is_finite(native) ? CK_STEP_OK : CK_STEP_DIVERGED;
 }

@@ -1,5 +1,6 @@
 #include "verlet_contact.h"
 
+#include "near_surfaces.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -51,32 +52,6 @@ void ck_verlet_contact_destroy(ck_VerletContact *contact) {
     free(contact->near);
     free(contact->state);
     free(contact);
-}
-
-// Where the colliders are at the start of the substep; how far they move in it counts as nearness.
-static void set_surfaces(ck_NearSurface *surfaces, const ck_Contact *contact) {
-    for (int i = 0; i < contact->model->collider_count; i++) {
-        const ck_Collider *collider = &contact->model->colliders[i];
-        ck_NearSurface *surface = &surfaces[i];
-        *surface = (ck_NearSurface){.is_plane = collider->shape == CK_PLANE,
-                                    .radius = collider->radius,
-                                    .margin = 2 * contact->slack,
-                                    .friction = collider->friction};
-        memcpy(surface->point, collider->point, sizeof surface->point);
-        memcpy(surface->normal, collider->normal, sizeof surface->normal);
-        for (int k = 0; k < 3; k++) {
-            if (!(collider->half[k] > 0)) continue;
-            memcpy(surface->axes[surface->axis_count], collider->axes[k], sizeof collider->axes[k]);
-            surface->half[surface->axis_count++] = collider->half[k];
-        }
-        if (!collider->path || !contact->motion) continue;
-        const ck_Motion *motion = &contact->motion[i];
-        const double dt = contact->dt;
-        ck_add_scaled(surface->point, 1, motion->moved);
-        surface->margin += dt * ck_length(motion->velocity) + 0.5 * dt * dt * ck_length(motion->acceleration);
-        // it jumps on the way: whatever is anywhere may be met
-        if (contact->until < dt) surface->margin = INFINITY;
-    }
 }
 
 static void take_one(double *one, const double *many, long stride, int i) {
@@ -133,7 +108,7 @@ void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Expl
     const ck_Loops *loops = ck_native_loops(native);
     ck_Loose *loose = &own->loose;
     if (contact->motion) ck_contact_follow(contact, ck_native_time(native));
-    if (contact->motion || !native->done) set_surfaces(own->surfaces, contact);
+    if (contact->motion || !native->done) ck_near_surfaces(own->surfaces, contact);
     const ck_Touched touch = {own->surfaces, model->collider_count, native->dt, contact->slack};
     if (!ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose)) weigh(own, model);
     contact->elapsed = native->dt;

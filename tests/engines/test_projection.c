@@ -94,7 +94,14 @@ static void compare_projection(const char *size, const char *springs, const char
     for (int kind = 0; ck_loops_at(kind); kind++) {
         ck_ProjectedCloth *cloth;
         double *result = results[kind] = calloc(3 * count, sizeof *x);
-        const ck_ProjectionSetup setup = {ck_loops_at(kind), model, &row_springs, &rule, x, v, before, weight};
+        const ck_ProjectionSetup setup = {.loops = ck_loops_at(kind),
+                                          .model = model,
+                                          .springs = &row_springs,
+                                          .rule = &rule,
+                                          .position = x,
+                                          .velocity = v,
+                                          .before = before,
+                                          .inverse_mass = weight};
         assert_int_equal(ck_projection_create(&cloth, &setup, NULL), CK_OK);
         // in two calls, as two frames are
         ck_projection_step(cloth, substeps / 4, NULL);

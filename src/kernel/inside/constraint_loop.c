@@ -225,7 +225,7 @@ CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Visit *vi
 CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
     const ck_Lanes free = ck_lanes_load(cloth->is_free + at.single);
     const ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile);
-    ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->start + at.tile));
+    ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->from + at.tile));
     if (CK_IS_SINGLE) moved = ck_lanes3_add(moved, ck_lanes3_load(cloth->kept + at.tile));
     const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved);
     const ck_Lanes3 there = ck_lanes3_add_scaled(x, free, way);
@@ -239,7 +239,8 @@ CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool 
 
 CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
     cloth->far_from[row] = LONG_MAX;
-    for (int i = 0; i < cloth->rows.span; i++)
+    if (cloth->contact) cloth->loops->row_fly(cloth, row, is_last);
+    for (int i = 0; i < cloth->rows.span && !cloth->contact; i++)
         for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
             const ck_Place at = ck_rows_place(&cloth->rows, row, i);
             predict_vector(cloth, (ck_Place){at.single + lane, at.tile + lane}, is_last);
@@ -263,6 +264,9 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Visits *visi
 #pragma GCC unroll 6
         for (int turn = 0; turn < COLOURS; turn++)
             project_colour(cloth, visits->at + first, together, colour_at(turn, terms), terms);
+    for (int i = 0; i < visits->count && cloth->contact; i++)
+        for (int k = 0; k < 2; k++)
+            if (visits->at[i].ends[k] >= 0) cloth->loops->row_press(cloth->contact, visits->at[i].ends[k]);
 }
 
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.

@@ -50,11 +50,13 @@ struct ck_ProjectedCloth {
     int depth;              // of which so many run interleaved; of both ways: of those of one
     double size, origin[3]; // m, of the cloth; and, of both; 0 but in single precision
     ck_Real *x, *start;     // tiles, m; start: before the last substep
+    ck_Real *from;          // m: where a way is measured from: start, but for impacts
     ck_Real *kept;          // m, in single precision: what rounding took of the last way; else not there
     ck_Real *before;        // m moved in the substep before the last one
     ck_Real *is_free;
     ck_Real *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
     bool *is_held;                        // [rows] a pin in the row or the one below
+    struct ck_RowContact *contact;        // NULL: there is nothing to touch
     long *far_from;                       // [rows] sweep from which on bars are looked at one by one
     ck_Real *state, *springs, *multipliers;
 };
@@ -69,10 +71,10 @@ enum {
     CK_SWEEP_FAR = 32
 };
 
-// A sweep at a row; and the rows, or -1, that are to begin the substep before it.
+// A sweep at a row; and the rows, or -1, that are to begin the substep before it, and those that it then is done with.
 typedef struct ck_Visit {
     long sweep;
-    int row, begins[2];
+    int row, begins[2], ends[2];
 } ck_Visit;
 
 // The most that are in flight together: of one sweep each, or of both halves.

@@ -14,6 +14,9 @@ ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_NearChunk CK_LOOP(ck_near_chunk);
 ck_SweepPacks CK_LOOP(ck_sweep_packs);
+ck_RowFly CK_LOOP(ck_row_fly);
+ck_RowPress CK_LOOP(ck_row_press);
+ck_RowMeets CK_LOOP(ck_row_meets);
 #endif
 
 extern const ck_Loops CK_LOOP(ck_loops);
@@ -34,5 +37,8 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .list_chunk = CK_LOOP(ck_list_chunk),
     .near_chunk = CK_LOOP(ck_near_chunk),
     .sweep_packs = CK_LOOP(ck_sweep_packs),
+    .row_fly = CK_LOOP(ck_row_fly),
+    .row_press = CK_LOOP(ck_row_press),
+    .row_meets = CK_LOOP(ck_row_meets),
 #endif
 };

@@ -35,6 +35,19 @@ CK_INLINE ck_Lanes ck_near_gap(const ck_NearSurface *surface, ck_Lanes3 x) {
     return squared * inverse - surface->radius;
 }
 
+// The gap to a ball, and the normal there: good to rounding by a further step of Newton's, or what lies on a large ball
+// would be seen in it.
+CK_INLINE ck_Lanes ck_near_ball_gap(ck_Lanes3 point, ck_Lanes radius, ck_Lanes3 x, ck_Lanes3 *normal) {
+    const ck_Lanes3 out = ck_lanes3_subtract(x, point);
+    const ck_Lanes squared = ck_lanes3_dot(out, out);
+    ck_Lanes guess;
+    ck_lanes_inverse_root(&guess, &squared, 1);
+    const ck_Lanes off = ck_lanes_minus(ck_lanes_all(1), squared * guess, guess);
+    const ck_Lanes inverse = ck_lanes_plus(guess, 0.5 * guess, off);
+    *normal = ck_lanes3_scale(inverse, out);
+    return squared * inverse - radius;
+}
+
 CK_INLINE ck_Lanes ck_near_sum(ck_Lanes3 a) {
     return ck_lanes_absolute(a.x) + ck_lanes_absolute(a.y) + ck_lanes_absolute(a.z);
 }

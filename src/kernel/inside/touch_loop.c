@@ -26,17 +26,6 @@ CK_INLINE ck_Lanes inverse_length(ck_Lanes squared) {
     return inverse;
 }
 
-// The gap to a ball, and the normal there: good to rounding by a further step of Newton's, or what lies on a large ball
-// would be seen in it.
-CK_INLINE ck_Lanes ball_gap(ck_Lanes3 point, ck_Lanes radius, ck_Lanes3 x, ck_Lanes3 *normal) {
-    const ck_Lanes3 out = ck_lanes3_subtract(x, point);
-    const ck_Lanes squared = ck_lanes3_dot(out, out), guess = inverse_length(squared);
-    const ck_Lanes off = ck_lanes_minus(ck_lanes_all(1), squared * guess, guess);
-    const ck_Lanes inverse = ck_lanes_plus(guess, 0.5 * guess, off);
-    *normal = ck_lanes3_scale(inverse, out);
-    return squared * inverse - radius;
-}
-
 CK_INLINE Surface choose(ck_LaneMask mask, const Surface *yes, const Surface *no) {
     return (Surface){
         ck_lanes3_choose(mask, yes->point, no->point),      ck_lanes3_choose(mask, yes->normal, no->normal),
@@ -61,7 +50,7 @@ CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes wa
             each.gap = ck_lanes3_dot(ck_lanes3_subtract(x, each.point), each.normal);
         } else {
             each.curvature = ck_lanes_all(1 / surface->radius);
-            each.gap = ball_gap(each.point, each.radius, x, &each.normal);
+            each.gap = ck_near_ball_gap(each.point, each.radius, x, &each.normal);
         }
         const ck_LaneMask is_near = ck_lanes_less(each.gap, way + surface->margin);
         const ck_LaneMask is_touched = ck_lanes_less(each.gap, slack);
@@ -145,7 +134,7 @@ CK_INLINE void slide(const Surface *surface, ck_Lanes3 *x, ck_Lanes3 *v, ck_Lane
     const ck_Lanes3 flat = ck_lanes3_scale(time, ck_lanes3_add_scaled(*v, 0.5 * time, left));
     const ck_Lanes3 to = ck_lanes3_add(*x, flat), faster = ck_lanes3_add_scaled(*v, time, left);
     ck_Lanes3 out;
-    const ck_Lanes gap = ball_gap(surface->point, surface->radius, to, &out);
+    const ck_Lanes gap = ck_near_ball_gap(surface->point, surface->radius, to, &out);
     const ck_Lanes3 turned = along_surface(faster, out);
     const ck_Lanes flat_squared = ck_lanes3_dot(flat, flat), turned_squared = ck_lanes3_dot(turned, turned);
     const ck_Lanes squared = flat_squared * surface->curvature * surface->curvature;

@@ -1,0 +1,60 @@
+// Contact of particles in rows, for methods that correct positions: a projected cloth's rows, or any body's particles
+// in rows of eight beside its list of springs.
+//
+// A sweep pushes out of a surface whatever is inside of it, and takes from its way what friction holds: in all sweeps
+// of a substep at most μ times what it was pushed out in all. Impacts are what the follower makes of them.
+#ifndef CK_ROW_CONTACT_H
+#define CK_ROW_CONTACT_H
+
+#include "loops.h"
+#include "model.h"
+#include "rows.h"
+#include "status.h"
+
+typedef struct ck_RowContact {
+    ck_Rows rows;
+    ck_Touched touched;         // where surfaces are at the start of a substep
+    const ck_NearSurface *ends; // and at its end
+    ck_Follower follower;
+    double *x;          // tiles, m: where all is; a projected cloth's own
+    double *from;       // tiles, m: where a substep's way is measured from: its start, but for impacts
+    double *way, *gain; // tiles, m: of those beside a list; see ck_RowMeets
+    double *held;       // tiles, m: what friction has taken of the way
+    double *depth;      // m: how far each was pushed out
+    double *mass;       // kg, 0 where it is not free
+    double *impulse;    // [rows] tiles, N·s: a sum a lane, so that vectors of any width give the same
+    bool *is_pressed;   // [rows] depth and held are not 0 all over
+    double *state;
+} ck_RowContact;
+
+// What may touch something.
+//   mass      [n] kg, 0 where it is not free
+typedef struct ck_RowContactSetup {
+    ck_Touched touched;
+    ck_Follower follower;
+    const double *mass;
+    int particles;
+} ck_RowContactSetup;
+
+// Beside a list, in its order. Surfaces are copied. Errors: CK_NO_MEMORY. Free with ck_row_contact_destroy.
+ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_RowContactSetup *setup, ck_Error *error);
+// The same of a projected cloth, whose places are then set by the caller.
+ck_Status ck_row_contact_of_rows(ck_RowContact **contact, const ck_RowContact *beside, const ck_Rows *rows,
+                                 ck_Error *error);
+void ck_row_contact_destroy(ck_RowContact *contact);
+
+// The surfaces where they move, [touched.count] to be set for each substep: at its start, and at its end.
+ck_NearSurface *ck_row_contact_surfaces(ck_RowContact *contact, bool at_end);
+
+// Nothing is pressed at the start of a substep.
+void ck_row_contact_begin(ck_RowContact *contact, int row);
+
+// Of those beside a list: to tiles from [3*n], and back a row's. Padding is left alone.
+void ck_row_contact_take(double *tiles, const double *vectors, int particles);
+void ck_row_contact_give(const ck_RowContact *contact, int row, double *position, int particles);
+
+// N·s that surfaces have given since it was last forgotten, added to impulse, [3].
+void ck_row_contact_forget_impulse(ck_RowContact *contact);
+void ck_row_contact_impulse(const ck_RowContact *contact, double *impulse);
+
+#endif

@@ -1,0 +1,118 @@
+// Contact of regular cloths whose constraints are projected, in rows, against the particles one by one.
+#include "fixture_loops.h"
+
+#include "constraint_kernel.h"
+#include "sweep_order.h"
+#include "vector.h"
+
+// What a run ends with: places, speeds times a frame, and the colliders' force, as a share of the weight.
+typedef struct End {
+    double *numbers;
+    size_t count;
+} End;
+
+static End run(const ck_Model *model, const char *engine, const ck_Settings *settings) {
+    ck_Trajectory trajectory;
+    fixture_run(&trajectory, model, ck_engine_find(engine), settings, NULL);
+    const int last = trajectory.frame_count - 1;
+    const size_t count = 3 * (size_t)model->particle_count;
+    End end = {calloc(2 * count + 3, sizeof(double)), 2 * count + 3};
+    memcpy(end.numbers, ck_trajectory_position(&trajectory, last), count * sizeof(double));
+    for (size_t i = 0; i < count; i++)
+        end.numbers[count + i] = model->step * ck_trajectory_velocity(&trajectory, last)[i];
+    for (int axis = 0; axis < 3; axis++) end.numbers[2 * count + (size_t)axis] = trajectory.contact[3 * last + axis];
+    ck_trajectory_free(&trajectory);
+    return end;
+}
+
+static double distance(const End *a, const End *b) {
+    double off = 0;
+    for (size_t i = 0; i < a->count; i++) off = fmax(off, fabs(a->numbers[i] - b->numbers[i]));
+    return off;
+}
+
+// Off the rows: colliders that may move are the list's, one by one. Its springs in the rows' order, so that the sweeps
+// are the same.
+static void leave_rows(ck_Model *model, ck_Projection projection, uint32_t sweeps) {
+    const size_t count = (size_t)model->spring_count;
+    ck_RowSprings springs;
+    int *order = malloc(sizeof *order * count);
+    ck_Spring *sorted = malloc(sizeof *sorted * count);
+    assert_true(ck_projection_fits(model, &springs));
+    assert_int_equal(ck_sweep_order(model, projection, sweeps, order), CK_OK);
+    for (size_t i = 0; i < count; i++) sorted[i] = model->springs[order[i]];
+    memcpy(model->springs, sorted, count * sizeof *sorted);
+    free(order);
+    free(sorted);
+    model->terms |= CK_TERM_MOVING_COLLIDERS;
+    assert_false(ck_projection_fits(model, &springs));
+}
+
+static bool uses_springs(const char *engine) {
+    return !strcmp(engine, "native-xpbd");
+}
+
+// All kinds of vectors, one thread and two, to the bit where they fuse; and the particles one by one, to what rounding
+// grows to, which is measured by a start that is 1e-13 m beside.
+static void compare(const char *body, const char *colliders, const char *engine, uint32_t sweeps) {
+    char text[900];
+    snprintf(text, sizeof text,
+             "name: touching\n%s\ngravity: [0, -9.81, 0]\ndrag: 1\nnoise: {amplitude: 1e-3, seed: 3}\ncolliders:\n%s"
+             "time: {duration: 0.25, step: 0.01}\n",
+             body, colliders);
+    Fixture fixture;
+    fixture_load(&fixture, text);
+    ck_Settings settings = {.substeps = 20, .iterations = sweeps, .threads = 1, .own_set = 1};
+    settings.own[0] = ck_loops_at(0)->lanes;
+    const End widest = run(&fixture.model, engine, &settings);
+    for (int kind = 0; ck_loops_at(kind); kind++)
+        for (settings.threads = 1; settings.threads < 3; settings.threads++) {
+            settings.own[0] = ck_loops_at(kind)->lanes;
+            End end = run(&fixture.model, engine, &settings);
+            assert_near("vectors", distance(&end, &widest), 0, 1e-7);
+            if (ck_loops_at(kind)->fuses && ck_loops_at(0)->fuses)
+                assert_memory_equal(end.numbers, widest.numbers, end.count * sizeof *end.numbers);
+            free(end.numbers);
+        }
+    settings.threads = 1;
+    leave_rows(&fixture.model, uses_springs(engine) ? CK_PROJECT_SPRINGS : CK_PROJECT_BARS, sweeps);
+    End alone = run(&fixture.model, engine, &settings);
+    for (int i = 0; i < 3 * fixture.model.particle_count; i++) fixture.model.position[i] += 1e-13 * sin(i);
+    End beside = run(&fixture.model, engine, &settings);
+    const double growth = distance(&alone, &beside) / 1e-13;
+    // each of 500 substeps rounds by 1e-16
+    assert_near(text, distance(&alone, &widest), 0, fmin(1e-12 * growth + 1e-10, 1e-6));
+    free(beside.numbers);
+    assert_true(fabs(widest.numbers[widest.count - 2]) > 0.1);
+    free(alone.numbers);
+    free(widest.numbers);
+    fixture_free(&fixture);
+}
+
+static void test_shapes(void **state) {
+    (void)state;
+    static const char *const bodies[] = {
+        "cloth: {rows: 9, columns: 9, spacing: 0.05, mass: 0.1, origin: [-0.2, 0.25, -0.2], down: [0, 0, 1]}\n"
+        "springs: {stiffness: 100, shear: 50}",
+        "cloth: {rows: 12, columns: 19, spacing: 0.05, mass: 0.3, origin: [-0.45, 0.25, -0.3], down: [0, 0, 1]}\n"
+        "springs: {stiffness: 200, damping: 0.02}\npins: [top_left]"};
+    static const char *const colliders[] = {
+        "  - {plane: {point: [0, 0.2, 0], normal: [0.1, 1, 0], friction: 0.5}}\n",
+        "  - {sphere: {center: [0, 0, 0], radius: 0.2, friction: 0.8}}\n",
+        "  - {plane: {point: [0, 0.2, 0], normal: [0, 1, 0], restitution: 0.5, friction: 0.1}}\n",
+        "  - {box: {center: [0, 0, 0], size: [0.3, 0.4, 0.3], rounding: 0.02, friction: 0.4}}\n",
+        "  - {sphere: {center: [0, 0, 0], radius: 0.2, friction: 0.3}}\n"
+        "  - {plane: {point: [0, 0.1, 0], normal: [0, 1, 0], friction: 0.2}}\n"
+        "  - {capsule: {from: [-0.3, 0.18, 0.12], to: [0.3, 0.18, 0.2], radius: 0.03, friction: 0.3}}\n"};
+    for (size_t body = 0; body < sizeof bodies / sizeof *bodies; body++)
+        for (size_t i = 0; i < sizeof colliders / sizeof *colliders; i++)
+            for (uint32_t sweeps = 1; sweeps < 5; sweeps += 3) {
+                compare(bodies[body], colliders[i], "native-bars", sweeps);
+                compare(bodies[body], colliders[i], "native-xpbd", sweeps);
+            }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
