@@ -8,8 +8,10 @@
 // Springs of a pack, in the mean, at least.
 #define LEAST_FILL (CK_PACK / 4)
 
-// Springs that wait for none before them, the lowest number first: a heap; and what the others wait for.
+// Springs, by their number in the order of sweeps, that wait for none before them, the lowest first: a heap; and what
+// the others wait for.
 typedef struct Waiting {
+    int *order; // [springs] the model's
     int *heap, count;
     int *next;   // [2*springs] the next spring at each end, or -1
     int *before; // [springs] how many still come before it
@@ -38,7 +40,8 @@ static void link_springs(Waiting *waiting, const ck_Model *model, int *last) {
     for (int i = 0; i < model->particle_count; i++) last[i] = -1;
     for (int i = model->spring_count - 1; i >= 0; i--)
         for (int end = 0; end < 2; end++) {
-            int *after = &last[end ? model->springs[i].b : model->springs[i].a];
+            const ck_Spring *spring = &model->springs[waiting->order[i]];
+            int *after = &last[end ? spring->b : spring->a];
             waiting->next[2 * i + end] = *after;
             if (*after >= 0) waiting->before[*after]++;
             *after = i;
@@ -58,20 +61,23 @@ static int fill_packs(Waiting *waiting, int *order) {
                 const int next = waiting->next[2 * pack[i] + end];
                 if (next >= 0 && !--waiting->before[next]) push(waiting, next);
             }
+        for (int i = 0; i < filled; i++) pack[i] = waiting->order[pack[i]];
         for (; filled < CK_PACK; filled++) pack[filled] = -1;
     }
     return packs;
 }
 
 // False without memory. No order, where packs are too empty to be worth it.
-static bool schedule(ck_SweepList *list, const ck_Model *model) {
+static bool schedule(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule) {
     const size_t springs = (size_t)model->spring_count;
     int *order = malloc(sizeof *order * CK_PACK * springs),
         *last = malloc(sizeof *last * (size_t)model->particle_count);
-    Waiting waiting = {.heap = malloc(sizeof(int) * springs),
+    Waiting waiting = {.order = malloc(sizeof(int) * springs),
+                       .heap = malloc(sizeof(int) * springs),
                        .next = malloc(2 * sizeof(int) * springs),
                        .before = calloc(springs, sizeof(int))};
-    const bool has_memory = order && last && waiting.heap && waiting.next && waiting.before;
+    const bool has_memory = order && last && waiting.order && waiting.heap && waiting.next && waiting.before &&
+                            !ck_sweep_order(model, rule->projection, rule->iterations, waiting.order);
     if (has_memory) {
         link_springs(&waiting, model, last);
         list->packs = fill_packs(&waiting, order);
@@ -80,6 +86,7 @@ static bool schedule(ck_SweepList *list, const ck_Model *model) {
     }
     if (!list->order) free(order);
     free(last);
+    free(waiting.order);
     free(waiting.heap);
     free(waiting.next);
     free(waiting.before);
@@ -179,7 +186,7 @@ ck_Status ck_sweep_list_create(ck_SweepList **out, const ck_Loops *loops, const 
     if (!model->spring_count || model->particle_count > CK_MOST_LISTED || model->spring_count > CK_MOST_LISTED)
         return CK_OK;
     ck_SweepList *list = calloc(1, sizeof *list);
-    bool has_memory = list && schedule(list, model);
+    bool has_memory = list && schedule(list, model, rule);
     if (has_memory && !list->order) {
         ck_sweep_list_destroy(list);
         return CK_OK;

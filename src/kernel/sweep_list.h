@@ -1,6 +1,6 @@
-// Gauss–Seidel sweeps over any springs, in vectors: in packs that share no particle, in such an order that of two
-// springs which share one the first of the model's list still comes first. So a sweep is that over the list, but for
-// rounding, and so is its reverse.
+// Gauss–Seidel sweeps over any springs, in vectors: in packs that share no particle, and such that of two springs which
+// share one the first in ck_sweep_order still comes first. So a sweep is that in this order, but for rounding, and so is
+// its reverse.
 #ifndef CK_SWEEP_LIST_H
 #define CK_SWEEP_LIST_H
 

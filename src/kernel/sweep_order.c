@@ -3,6 +3,7 @@
 #include "constraint_kernel.h"
 #include "constraint_loop.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 
 typedef struct Visit {
@@ -43,10 +44,51 @@ static long when_visited(const Way *way, const ck_Spring *spring) {
     return (turn * CK_COLOUR_COUNT + colour) * rows->stride + ck_rows_at(rows, 0, column).single;
 }
 
+// Springs that are coloured together: so many that packs are full, and so few that they stay near.
+#define PART 256
+#define COLOURS 64
+
+// Correction goes round a mesh in many ways; along a rope, or over a tree, it goes in the springs' order alone.
+static bool is_meshed(const ck_Model *model) {
+    return 2L * model->spring_count > 3L * model->particle_count;
+}
+
+// Orders springs from one on by colours: each has the first that neither of its particles has yet; of more than there
+// are, the last.
+//   taken  [n] a bit for each colour that a particle has
+static void order_part(const ck_Model *model, int from, int count, uint64_t *taken, int *order) {
+    unsigned char colours[PART];
+    int starts[COLOURS + 1] = {0};
+    for (int i = 0; i < count; i++) taken[model->springs[from + i].a] = taken[model->springs[from + i].b] = 0;
+    for (int i = 0; i < count; i++) {
+        const ck_Spring *spring = &model->springs[from + i];
+        const uint64_t left = ~(taken[spring->a] | taken[spring->b]);
+        const int colour = left ? __builtin_ctzll(left) : COLOURS - 1;
+        taken[spring->a] |= (uint64_t)1 << colour;
+        taken[spring->b] |= (uint64_t)1 << colour;
+        colours[i] = (unsigned char)colour;
+        starts[colour + 1]++;
+    }
+    for (int i = 0; i < COLOURS; i++) starts[i + 1] += starts[i];
+    for (int i = 0; i < count; i++) order[from + starts[colours[i]]++] = from + i;
+}
+
+static ck_Status order_mesh(const ck_Model *model, int *order) {
+    uint64_t *taken = malloc(sizeof *taken * (size_t)model->particle_count);
+    if (!taken) return CK_NO_MEMORY;
+    for (int from = 0; from < model->spring_count; from += PART) {
+        const int left = model->spring_count - from;
+        order_part(model, from, left < PART ? left : PART, taken, order);
+    }
+    free(taken);
+    return CK_OK;
+}
+
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order) {
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
-    if (!ck_projection_fits(model, &springs)) return CK_OK;
+    if (!ck_projection_fits(model, &springs))
+        return projection == CK_PROJECT_SPRINGS && is_meshed(model) ? order_mesh(model, order) : CK_OK;
     const Way way = {ck_rows_of(model), projection, sweeps == 1 || projection == CK_PROJECT_SPRINGS};
     Visit *visits = malloc(sizeof *visits * (size_t)model->spring_count);
     if (!visits) return CK_NO_MEMORY;

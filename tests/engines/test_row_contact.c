@@ -2,6 +2,7 @@
 #include "fixture_loops.h"
 
 #include "constraint_kernel.h"
+#include "contact.h"
 #include "sweep_order.h"
 #include "vector.h"
 
@@ -31,15 +32,14 @@ static double distance(const End *a, const End *b) {
     return off;
 }
 
-// Off the rows: colliders that may move are the list's, one by one. Its springs in the rows' order, so that the sweeps
-// are the same.
-static void leave_rows(ck_Model *model, ck_Projection projection, uint32_t sweeps) {
+// Off the rows: colliders that may move are the list's. Its bars in the rows' order, so that the sweeps are the same.
+static void leave_rows(ck_Model *model, uint32_t sweeps) {
     const size_t count = (size_t)model->spring_count;
     ck_RowSprings springs;
     int *order = malloc(sizeof *order * count);
     ck_Spring *sorted = malloc(sizeof *sorted * count);
     assert_true(ck_projection_fits(model, &springs));
-    assert_int_equal(ck_sweep_order(model, projection, sweeps, order), CK_OK);
+    assert_int_equal(ck_sweep_order(model, CK_PROJECT_BARS, sweeps, order), CK_OK);
     for (size_t i = 0; i < count; i++) sorted[i] = model->springs[order[i]];
     memcpy(model->springs, sorted, count * sizeof *sorted);
     free(order);
@@ -48,8 +48,96 @@ static void leave_rows(ck_Model *model, ck_Projection projection, uint32_t sweep
     assert_false(ck_projection_fits(model, &springs));
 }
 
-static bool uses_springs(const char *engine) {
-    return !strcmp(engine, "native-xpbd");
+// XPBD spring by spring and particle by particle, by the formulas that rows stand for.
+typedef struct Plain {
+    const ck_Model *model;
+    ck_Contact *contact;
+    double dt, *x, *v, *start, *from, *multipliers;
+    ck_Pressed *pressed;
+    int *order;
+} Plain;
+
+static void plain_fly(const Plain *plain) {
+    const ck_Model *model = plain->model;
+    for (int i = 0; i < model->particle_count; i++) {
+        double *x = plain->x + 3 * i, field[3], next[3], v[3];
+        memcpy(plain->start + 3 * i, x, sizeof v);
+        memcpy(plain->from + 3 * i, x, sizeof v);
+        plain->pressed[i] = (ck_Pressed){0};
+        if (model->pinned[i]) continue;
+        ck_model_field(model, i, field);
+        for (int axis = 0; axis < 3; axis++) next[axis] = v[axis] = plain->v[3 * i + axis] + plain->dt * field[axis];
+        if (ck_contact_meet(plain->contact, model->mass[i], field, x, v)) {
+            memcpy(plain->from + 3 * i, x, sizeof v);
+            ck_add_scaled(plain->from + 3 * i, -plain->dt, v);
+        } else {
+            ck_add_scaled(x, plain->dt, next);
+        }
+    }
+}
+
+static void plain_spring(const Plain *plain, int index) {
+    const ck_Spring *spring = &plain->model->springs[index];
+    const double dt = plain->dt, compliance = 1 / (spring->stiffness * dt * dt),
+                 gamma = spring->damping / (spring->stiffness * dt);
+    const double weight_a = ck_model_inverse_mass(plain->model, spring->a),
+                 weight_b = ck_model_inverse_mass(plain->model, spring->b);
+    double *a = plain->x + 3 * spring->a, *b = plain->x + 3 * spring->b, now[3], old[3];
+    if (weight_a + weight_b == 0) return;
+    ck_subtract(now, b, a);
+    ck_subtract(old, plain->start + 3 * spring->b, plain->start + 3 * spring->a);
+    const double length = ck_length(now), moved = length - ck_dot(now, old) / length;
+    const double change = -(length - spring->rest + compliance * plain->multipliers[index] + gamma * moved) /
+                          ((1 + gamma) * (weight_a + weight_b) + compliance);
+    plain->multipliers[index] += change;
+    ck_add_scaled(a, -weight_a * change / length, now);
+    ck_add_scaled(b, weight_b * change / length, now);
+}
+
+static void plain_substep(const Plain *plain, uint32_t sweeps) {
+    const ck_Model *model = plain->model;
+    plain_fly(plain);
+    memset(plain->multipliers, 0, sizeof(double) * (size_t)model->spring_count);
+    for (uint32_t sweep = 0; sweep < sweeps; sweep++) {
+        for (int k = 0; k < model->spring_count; k++) plain_spring(plain, plain->order[k]);
+        for (int i = 0; i < model->particle_count; i++)
+            if (!model->pinned[i])
+                ck_contact_project(plain->contact, model->mass[i], plain->from + 3 * i, &plain->pressed[i],
+                                   plain->x + 3 * i);
+    }
+    const double rate = 1 / (1 + model->drag * plain->dt) / plain->dt;
+    for (int i = 0; i < 3 * model->particle_count; i++) plain->v[i] = rate * (plain->x[i] - plain->from[i]);
+}
+
+static End run_plain(const ck_Model *model, const ck_Settings *settings) {
+    const size_t count = 3 * (size_t)model->particle_count, springs = (size_t)model->spring_count;
+    double *state = malloc((4 * count + springs) * sizeof *state);
+    Plain plain = {.model = model,
+                   .dt = model->step / settings->substeps,
+                   .x = state,
+                   .v = state + count,
+                   .start = state + 2 * count,
+                   .from = state + 3 * count,
+                   .multipliers = state + 4 * count,
+                   .pressed = malloc(sizeof *plain.pressed * count),
+                   .order = malloc(sizeof *plain.order * springs)};
+    End end = {calloc(2 * count + 3, sizeof(double)), 2 * count + 3};
+    assert_int_equal(ck_contact_create(&plain.contact, model, plain.dt, NULL), CK_OK);
+    assert_int_equal(ck_sweep_order(model, CK_PROJECT_SPRINGS, settings->iterations, plain.order), CK_OK);
+    memcpy(plain.x, model->position, count * sizeof *state);
+    memcpy(plain.v, model->velocity, count * sizeof *state);
+    for (int frame = 0; frame < model->frame_count; frame++) {
+        memset(plain.contact->impulse, 0, sizeof plain.contact->impulse);
+        for (uint32_t i = 0; i < settings->substeps; i++) plain_substep(&plain, settings->iterations);
+    }
+    memcpy(end.numbers, plain.x, count * sizeof *state);
+    for (size_t i = 0; i < count; i++) end.numbers[count + i] = model->step * plain.v[i];
+    for (size_t axis = 0; axis < 3; axis++) end.numbers[2 * count + axis] = plain.contact->impulse[axis] / model->step;
+    free(plain.contact);
+    free(plain.pressed);
+    free(plain.order);
+    free(state);
+    return end;
 }
 
 // All kinds of vectors, one thread and two, to the bit where they fuse; and the particles one by one, to what rounding
@@ -75,10 +163,11 @@ static void compare(const char *body, const char *colliders, const char *engine,
             free(end.numbers);
         }
     settings.threads = 1;
-    leave_rows(&fixture.model, uses_springs(engine) ? CK_PROJECT_SPRINGS : CK_PROJECT_BARS, sweeps);
-    End alone = run(&fixture.model, engine, &settings);
+    const bool are_bars = !strcmp(engine, "native-bars");
+    if (are_bars) leave_rows(&fixture.model, sweeps);
+    End alone = are_bars ? run(&fixture.model, engine, &settings) : run_plain(&fixture.model, &settings);
     for (int i = 0; i < 3 * fixture.model.particle_count; i++) fixture.model.position[i] += 1e-13 * sin(i);
-    End beside = run(&fixture.model, engine, &settings);
+    End beside = are_bars ? run(&fixture.model, engine, &settings) : run_plain(&fixture.model, &settings);
     const double growth = distance(&alone, &beside) / 1e-13;
     // each of 500 substeps rounds by 1e-16
     assert_near(text, distance(&alone, &widest), 0, fmin(1e-12 * growth + 1e-10, 1e-6));
