@@ -18,16 +18,13 @@ CK_INLINE void look(const struct ck_ExplicitCloth *cloth, int row, const ck_Near
 
 // Into near, of each vector of a row: a bit for each particle that may come to touch a surface within the substep.
 ck_NearRow CK_LOOP(ck_near_row);
-void CK_LOOP(ck_near_row)(const struct ck_ExplicitCloth *shared, int row, const ck_NearSurface *surfaces, int count,
+void CK_LOOP(ck_near_row)(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
                           uint8_t *near) {
-    const struct ck_ExplicitCloth cloth = *shared;
-    for (int i = 0; i < cloth.rows.span; i++) near[i] = 0;
-    for (int k = 0; k < count; k++) {
-        const ck_NearSurface surface = surfaces[k];
-        switch (ck_near_shape(&surface)) {
-        case CK_NEAR_PLANE: look(&cloth, row, &surface, near, CK_NEAR_PLANE); break;
-        case CK_NEAR_BALL: look(&cloth, row, &surface, near, CK_NEAR_BALL); break;
-        default: look(&cloth, row, &surface, near, CK_NEAR_SOLID); break;
+    for (int i = 0; i < cloth->rows.span; i++) near[i] = 0;
+    for (int k = 0; k < count; k++)
+        switch (ck_near_shape(&surfaces[k])) {
+        case CK_NEAR_PLANE: look(cloth, row, &surfaces[k], near, CK_NEAR_PLANE); break;
+        case CK_NEAR_BALL: look(cloth, row, &surfaces[k], near, CK_NEAR_BALL); break;
+        default: look(cloth, row, &surfaces[k], near, CK_NEAR_SOLID); break;
         }
-    }
 }
