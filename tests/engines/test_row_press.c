@@ -36,6 +36,19 @@ static void place(Crowd *crowd, ck_Random *random, int i) {
     ck_add_scaled(x, offs[i % 5] - gap, normal);
 }
 
+// What loops leave alone.
+static void press_alone(void *state, int particle, const double *from, double *depth, double *held, double *x,
+                        double *impulse) {
+    const Crowd *crowd = state;
+    ck_Contact contact = *crowd->contact;
+    ck_Pressed pressed = {*depth, {held[0], held[1], held[2]}};
+    memset(contact.impulse, 0, sizeof contact.impulse);
+    ck_contact_project(&contact, crowd->mass[particle], from, &pressed, x);
+    *depth = pressed.depth;
+    memcpy(held, pressed.held, sizeof pressed.held);
+    ck_add_scaled(impulse, 1, contact.impulse);
+}
+
 static void scatter(double *tiles, const double *vectors) {
     ck_row_contact_take(tiles, vectors, PARTICLES);
 }
@@ -66,8 +79,11 @@ static void gather_crowd(Crowd *crowd, const char *colliders, uint64_t seed) {
     assert_true(crowd->fixture.model.collider_count <= 8);
     ck_near_surfaces(surfaces, crowd->contact);
     const ck_Touched touched = {surfaces, crowd->fixture.model.collider_count, DT, crowd->contact->slack};
-    assert_int_equal(
-        ck_row_contact_create(&crowd->rows, &(ck_RowContactSetup){touched, {0}, crowd->mass, PARTICLES}, NULL), CK_OK);
+    assert_int_equal(ck_row_contact_create(
+                         &crowd->rows,
+                         &(ck_RowContactSetup){touched, {.state = crowd, .press = press_alone}, crowd->mass, PARTICLES},
+                         NULL),
+                     CK_OK);
     ck_near_surfaces_at_end(ck_row_contact_surfaces(crowd->rows, true), crowd->contact);
     scatter(crowd->rows->x, crowd->x);
     scatter(crowd->rows->from, crowd->from);
@@ -92,6 +108,11 @@ static const char *const colliders[] = {
     "  - {sphere: {center: [0, 0, 0], radius: 0.3, friction: 0.4}, path: {velocity: [0.5, 0.2, 0]}}\n"
     "  - {plane: {point: [0, -0.2, 0], normal: [0, 1, 0], friction: 0.5}, path: {amplitude: [0, 0.1, 0.1], frequency: "
     "3}}\n",
+    "  - {capsule: {from: [-0.2, 0, 0.1], to: [0.3, 0.1, 0], radius: 0.1, friction: 0.6}}\n",
+    "  - {cylinder: {point: [0, 0.1, 0], axis: [0, 0, 1], radius: 0.2, friction: 0.3}, path: {velocity: [0, 1, 0]}}\n"
+    "  - {box: {center: [0.2, -0.1, 0], size: [0.3, 0.4, 0.3], rounding: 0.03, friction: 0.4}}\n",
+    "  - {box: {center: [0, 0, 0], size: [0.3, 0.4, 0.3], friction: 0.4}}\n"
+    "  - {plane: {point: [0, -0.15, 0], normal: [0, 1, 0.1], friction: 0.5}}\n",
 };
 #define CROWDS (sizeof colliders / sizeof *colliders)
 

@@ -35,10 +35,9 @@ CK_INLINE ck_Lanes ck_near_gap(const ck_NearSurface *surface, ck_Lanes3 x) {
     return squared * inverse - surface->radius;
 }
 
-// The gap to a ball, and the normal there: good to rounding by a further step of Newton's, or what lies on a large ball
-// would be seen in it.
-CK_INLINE ck_Lanes ck_near_ball_gap(ck_Lanes3 point, ck_Lanes radius, ck_Lanes3 x, ck_Lanes3 *normal) {
-    const ck_Lanes3 out = ck_lanes3_subtract(x, point);
+// How far out of a core is more than a radius, and the normal there: good to rounding by a further step of Newton's, or
+// what lies on a large ball would be seen in it.
+CK_INLINE ck_Lanes ck_near_round_gap(ck_Lanes3 out, ck_Lanes radius, ck_Lanes3 *normal) {
     const ck_Lanes squared = ck_lanes3_dot(out, out);
     ck_Lanes guess;
     ck_lanes_inverse_root(&guess, &squared, 1);

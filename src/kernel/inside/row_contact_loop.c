@@ -36,6 +36,11 @@ CK_INLINE unsigned free_bits(const ck_RowContact *contact, const Group *group) {
     return ck_lanes_bits(ck_lanes_less(none, ck_lanes_load(contact->mass + group->at.single)));
 }
 
+// Of a solid with sharp edges, the way out is a matter of cases.
+CK_INLINE bool is_sharp(const ck_NearSurface *surface) {
+    return surface->axis_count && !(surface->radius > 0);
+}
+
 CK_INLINE ck_Lanes larger(ck_Lanes a, ck_Lanes b) {
     return ck_lanes_choose(ck_lanes_less(a, b), b, a);
 }
@@ -52,19 +57,14 @@ CK_INLINE unsigned may_hit(const ck_Touched *touch, const ck_NearSurface *surfac
     }
     const unsigned near = ck_near_bits(x, way, gain, 1, surface, shape);
     // whose speed jumps, anything may meet
-    if (!near || shape == CK_NEAR_SOLID || surface->margin == INFINITY) return near;
+    if (!near || is_sharp(surface) || surface->margin == INFINITY) return near;
     ck_Lanes3 normal = ck_lanes3_all(surface->normal);
     ck_Lanes turned = none, gap;
-    if (shape == CK_NEAR_BALL) {
-        const ck_Lanes3 out = ck_near_out(surface, x);
-        const ck_Lanes squared = ck_lanes3_dot(out, out);
-        ck_Lanes inverse;
-        ck_lanes_inverse_root(&inverse, &squared, 1);
-        normal = ck_lanes3_scale(inverse, out);
-        gap = squared * inverse - surface->radius;
-        turned = ck_near_most(way, gain, 1) * (1 / surface->radius) * (ck_near_sum(way) + ck_near_sum(gain));
-    } else {
+    if (shape == CK_NEAR_PLANE) {
         gap = ck_near_gap(surface, x);
+    } else {
+        gap = ck_near_round_gap(ck_near_out(surface, x), ck_lanes_all(surface->radius), &normal);
+        turned = ck_near_most(way, gain, 1) * (1 / surface->radius) * (ck_near_sum(way) + ck_near_sum(gain));
     }
     const ck_Lanes inwards = turned - ck_lanes3_dot(way, normal),
                    rest = ck_lanes_absolute(ck_lanes3_dot(gain, normal)) * (1 - 1e-9);
@@ -171,14 +171,13 @@ CK_INLINE ck_Lanes3 hold(ck_Lanes3 held, ck_Lanes3 along, ck_Lanes3 normal, ck_L
     return along_surface(ck_lanes3_subtract(ck_lanes3_scale(share, wanted), held), normal);
 }
 
-// Pushes out those of asked, 1 or 0, that are inside of a plane or a ball. Returns by how much, m.
+// Pushes out those of asked, 1 or 0, that are inside of a surface without sharp edges. Returns by how much, m.
 CK_INLINE ck_Lanes push_out(const ck_NearSurface *surface, ck_Lanes asked, Pressed *pressed) {
-
     const ck_Lanes3 before = pressed->x;
     ck_Lanes3 normal = ck_lanes3_all(surface->normal);
-    const ck_Lanes gap = surface->is_plane ? ck_near_gap(surface, before)
-                                           : ck_near_ball_gap(ck_lanes3_all(surface->point),
-                                                              ck_lanes_all(surface->radius), before, &normal);
+    const ck_Lanes gap = surface->is_plane
+                             ? ck_near_gap(surface, before)
+                             : ck_near_round_gap(ck_near_out(surface, before), ck_lanes_all(surface->radius), &normal);
     // what was pushed out by as much may still be held where it was lifted a little
     const ck_LaneMask is_held = ck_lanes_less(none, ck_lanes_choose(ck_lanes_less(gap, pressed->depth), asked, none));
     const ck_Lanes inside = ck_lanes_choose(is_held, larger(-gap, none), none);
@@ -195,9 +194,9 @@ CK_INLINE ck_Lanes push_out(const ck_NearSurface *surface, ck_Lanes asked, Press
     return inside;
 }
 
-// 1 for each that a surface may press: nearer than it was pushed out so far. What is no number is not.
-CK_INLINE ck_Lanes close_to(const ck_NearSurface *surface, ck_Lanes3 x, ck_Lanes depth) {
-    const ck_Lanes reach = depth + (surface->margin + surface->radius);
+// 1 for each that is nearer to a surface's radius, or a share of it, than some reach. What is no number is not.
+CK_INLINE ck_Lanes close_to(const ck_NearSurface *surface, double share, ck_Lanes3 x, ck_Lanes most) {
+    const ck_Lanes reach = most + (surface->margin + share * surface->radius);
     const ck_Lanes3 out = ck_near_out(surface, x);
     const ck_LaneMask is_close = surface->is_plane
                                      ? ck_lanes_less(ck_lanes3_dot(out, ck_lanes3_all(surface->normal)), reach)
@@ -224,7 +223,7 @@ static __attribute__((noinline)) void press_alone(const ck_RowContact *contact, 
 // Between several surfaces, one pushes into another; see contact.c.
 #define PUSH_ROUNDS 16
 
-// Those of asked, 1 or 0, by planes and balls.
+// Those of asked, 1 or 0, by what has no sharp edges.
 static __attribute__((noinline)) void press(const ck_RowContact *contact, const Group *group, ck_Lanes asked) {
     const ck_Touched *touch = &contact->touched;
     const ck_Place at = group->at;
@@ -236,7 +235,7 @@ static __attribute__((noinline)) void press(const ck_RowContact *contact, const 
     for (int round = 0; round < (touch->count > 1 ? PUSH_ROUNDS : 1) && ck_lanes_any_beyond(asked, 0); round++) {
         ck_Lanes pushed = none;
         for (int k = 0; k < touch->count; k++)
-            if (!contact->ends[k].axis_count) pushed = larger(pushed, push_out(&contact->ends[k], asked, &pressed));
+            if (!is_sharp(&contact->ends[k])) pushed = larger(pushed, push_out(&contact->ends[k], asked, &pressed));
         // by rounding alone, nothing is pushed into another
         asked = ck_lanes_choose(ck_lanes_less(ck_lanes_all(1e-3 * touch->slack), pushed), asked, none);
     }
@@ -247,39 +246,53 @@ static __attribute__((noinline)) void press(const ck_RowContact *contact, const 
     ck_lanes3_store(sum, ck_lanes3_add_scaled(ck_lanes3_load(sum), rate, pressed.gained));
 }
 
-// As far as planes and balls may push, m: by what is inside of them, some more where one pushes into another, and by
-// what friction then takes of the way and gives back.
+// As far as what has no sharp edges may push, m: by what is inside of it, some more where one pushes into another, and
+// by what friction then takes of the way and gives back.
 static __attribute__((noinline)) ck_Lanes most_pushed(const ck_RowContact *contact, const Group *group, ck_Lanes3 x) {
     ck_Lanes inside = none;
     for (int k = 0; k < contact->touched.count; k++) {
         const ck_NearSurface *surface = &contact->ends[k];
-        const ck_Lanes3 out = ck_lanes3_subtract(x, ck_lanes3_all(surface->point));
+        const ck_Lanes3 out = ck_near_out(surface, x);
         if (surface->is_plane)
             inside += larger(-ck_lanes3_dot(out, ck_lanes3_all(surface->normal)), none);
-        else if (!surface->axis_count)
+        else if (!is_sharp(surface))
             inside += larger(surface->radius - ck_lanes3_dot(out, out) * (1 / surface->radius), none);
     }
     const ck_Lanes3 way = ck_lanes3_subtract(x, ck_lanes3_load(contact->from + group->at.tile));
     return 2 * inside + ck_near_sum(way) + ck_near_sum(ck_lanes3_load(contact->held + group->at.tile));
 }
 
-// What may come to a solid goes alone: where its way out leads is a matter of cases.
+// Of those that are close to something, 1 for each that goes alone: what may come to sharp edges, or half way to the
+// core of a solid, out of which there is no one way.
+static __attribute__((noinline)) ck_Lanes find_alone(const ck_RowContact *contact, const Group *group, ck_Lanes3 x,
+                                                     ck_Lanes depth, ck_Lanes asked) {
+    ck_Lanes alone = none, reach = none;
+    if (contact->touched.count > 1 && ck_lanes_any_beyond(asked, 0)) reach = asked * most_pushed(contact, group, x);
+    for (int k = 0; k < contact->touched.count; k++) {
+        const ck_NearSurface *surface = &contact->ends[k];
+        if (is_sharp(surface))
+            alone = larger(alone, close_to(surface, 1, x, depth + reach));
+        else if (surface->axis_count)
+            alone = larger(alone, close_to(surface, 0.5, x, reach));
+    }
+    return alone;
+}
+
 CK_INLINE bool press_group(const ck_RowContact *contact, const Group *group) {
-    const ck_Touched *touch = &contact->touched;
     const ck_Lanes3 x = ck_lanes3_load(contact->x + group->at.tile);
     const ck_Lanes depth = ck_lanes_load(contact->depth + group->at.single);
-    ck_Lanes asked = none, alone = none, reach = depth;
+    ck_Lanes asked = none, alone = none, close = none;
     bool has_solids = false;
-    for (int k = 0; k < touch->count; k++) {
-        has_solids |= contact->ends[k].axis_count > 0;
-        if (!contact->ends[k].axis_count) asked = larger(asked, close_to(&contact->ends[k], x, depth));
+    for (int k = 0; k < contact->touched.count; k++) {
+        const ck_NearSurface *surface = &contact->ends[k];
+        const ck_Lanes is_close = close_to(surface, 1, x, depth);
+        has_solids |= surface->axis_count > 0;
+        close = larger(close, is_close);
+        if (!is_sharp(surface)) asked = larger(asked, is_close);
     }
-    if (has_solids && ck_lanes_any_beyond(asked, 0)) reach += asked * most_pushed(contact, group, x);
-    for (int k = 0; k < touch->count && has_solids; k++)
-        if (contact->ends[k].axis_count) alone = larger(alone, close_to(&contact->ends[k], x, reach));
-    if (!ck_lanes_any_beyond(asked + alone, 0)) return false;
+    if (!ck_lanes_any_beyond(close, 0)) return false;
     const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(contact->mass + group->at.single));
-    alone = ck_lanes_choose(is_free, alone, none);
+    if (has_solids) alone = ck_lanes_choose(is_free, find_alone(contact, group, x, depth, asked), none);
     asked = ck_lanes_choose(is_free, asked * (1 - alone), none);
     if (ck_lanes_any_beyond(asked, 0)) press(contact, group, asked);
     for (unsigned left = ck_lanes_bits(ck_lanes_less(none, alone)); left; left &= left - 1)

@@ -50,7 +50,7 @@ CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes wa
             each.gap = ck_lanes3_dot(ck_lanes3_subtract(x, each.point), each.normal);
         } else {
             each.curvature = ck_lanes_all(1 / surface->radius);
-            each.gap = ck_near_ball_gap(each.point, each.radius, x, &each.normal);
+            each.gap = ck_near_round_gap(ck_lanes3_subtract(x, each.point), each.radius, &each.normal);
         }
         const ck_LaneMask is_near = ck_lanes_less(each.gap, way + surface->margin);
         const ck_LaneMask is_touched = ck_lanes_less(each.gap, slack);
@@ -134,7 +134,7 @@ CK_INLINE void slide(const Surface *surface, ck_Lanes3 *x, ck_Lanes3 *v, ck_Lane
     const ck_Lanes3 flat = ck_lanes3_scale(time, ck_lanes3_add_scaled(*v, 0.5 * time, left));
     const ck_Lanes3 to = ck_lanes3_add(*x, flat), faster = ck_lanes3_add_scaled(*v, time, left);
     ck_Lanes3 out;
-    const ck_Lanes gap = ck_near_ball_gap(surface->point, surface->radius, to, &out);
+    const ck_Lanes gap = ck_near_round_gap(ck_lanes3_subtract(to, surface->point), surface->radius, &out);
     const ck_Lanes3 turned = along_surface(faster, out);
     const ck_Lanes flat_squared = ck_lanes3_dot(flat, flat), turned_squared = ck_lanes3_dot(turned, turned);
     const ck_Lanes squared = flat_squared * surface->curvature * surface->curvature;
