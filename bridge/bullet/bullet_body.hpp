@@ -64,7 +64,7 @@ struct ck_BulletBody {
     ck_BulletLinkTable links;
 };
 
-//   reordered  links in the order in which native sweeps over rows, in which neighbours do not wait for each other
+//   reordered  links in the order of native-xpbd's sweeps, in which neighbours do not wait for each other
 // Builds nodes and links with the scene's rest lengths, which Bullet would overwrite on its first step if let.
 void ck_bullet_body_build(ck_BulletBody &body, const ck_Model *model, uint32_t substeps, bool reordered,
                           btSoftBodyWorldInfo *info);

@@ -1,11 +1,12 @@
 // Position constraints on a regular cloth, Gauss–Seidel over rows: rigid bars and compliant springs (XPBD).
 //
-// A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. In each sweep the springs of a row are
-// corrected vector by vector of eight, however wide the processor's are: those along it from even columns of a run,
-// then from odd ones; then of bars those to the next row, straight down, down right and down left, of springs those
-// down right and down left, and straight down from the row above. Sweeps go down the rows; but of several over bars one
-// half goes from the first and the last row to the middle, the other half the same way back. That is the order of
-// ck_sweep_order and ck_sweep_is_turned.
+// A substep: x ← x + (carry·v + push)·dt; sweeps; v ← keep·(x − x_start)/dt. Where there are surfaces, impacts come in
+// the flight, from which the speed is then measured, and each sweep ends with what surfaces push out; see
+// row_contact.h. In each sweep the springs of a row are corrected vector by vector of eight, however wide the
+// processor's are: those along it from even columns of a run, then from odd ones; then of bars those to the next row,
+// straight down, down right and down left, of springs those down right and down left, and straight down from the row
+// above. Sweeps go down the rows; but of several over bars one half goes from the first and the last row to the middle,
+// the other half the same way back. That is the order of ck_sweep_order and ck_sweep_is_turned.
 #ifndef CK_CONSTRAINT_KERNEL_H
 #define CK_CONSTRAINT_KERNEL_H
 

@@ -43,7 +43,7 @@ typedef struct ck_Loose {
     double *is_alone; // not 0: no loop takes it
 } ck_Loose;
 
-// What they may touch, none of which moves.
+// What they may touch; touch_slide takes none that moves.
 typedef struct ck_Touched {
     const ck_NearSurface *surfaces;
     int count;
@@ -81,8 +81,8 @@ typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const st
 // A row's flight to the start of a substep's sweeps, and what surfaces push it by in a sweep; see row_contact_loop.c.
 typedef void ck_RowFly(const struct ck_ProjectedCloth *cloth, int row, bool is_last);
 typedef bool ck_RowPress(const struct ck_RowContact *contact, int row); // true where anything was
-// Beside a list: a bit for each of a row of eight that its follower is to ask whether it meets a surface on its way,
-// from x at a speed way/dt under a field gain/dt².
+// Beside a list: a bit for each of a row of eight that may meet a surface on its way, from x at a speed way/dt under a
+// field gain/dt²; the others do not.
 typedef unsigned ck_RowMeets(const struct ck_RowContact *contact, int row);
 // A sweep over packs of springs; see sweep_list_loop.h.
 typedef void ck_SweepPacks(const struct ck_SweepList *list, bool is_turned);

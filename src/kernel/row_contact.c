@@ -47,13 +47,12 @@ static ck_Status create(ck_RowContact **out, const ck_Rows *rows, const ck_Touch
     return CK_OK;
 }
 
-ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_RowContactSetup *setup, ck_Error *error) {
-    const ck_Rows rows = rows_of_eight(setup->particles);
-    ck_Status status = create(contact, &rows, &setup->touched, true, error);
-    if (status) return status;
-    (*contact)->follower = setup->follower;
-    memcpy((*contact)->mass, setup->mass, sizeof *setup->mass * (size_t)setup->particles);
-    return CK_OK;
+ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Touched *touched, const ck_Follower *follower,
+                                int particles, ck_Error *error) {
+    const ck_Rows rows = rows_of_eight(particles);
+    ck_Status status = create(contact, &rows, touched, true, error);
+    if (!status) (*contact)->follower = *follower;
+    return status;
 }
 
 ck_Status ck_row_contact_of_rows(ck_RowContact **contact, const ck_RowContact *beside, const ck_Rows *rows,

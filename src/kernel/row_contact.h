@@ -18,7 +18,7 @@ typedef struct ck_RowContact {
     ck_Follower follower;
     double *x;          // tiles, m: where all is; a projected cloth's own
     double *from;       // tiles, m: where a substep's way is measured from: its start, but for impacts
-    double *way, *gain; // tiles, m: of those beside a list; see ck_RowMeets
+    double *way, *gain; // tiles, m, beside a list: speed at the start times dt, field times dt²
     double *held;       // tiles, m: what friction has taken of the way
     double *depth;      // m: how far each was pushed out
     double *mass;       // kg, 0 where it is not free
@@ -27,18 +27,11 @@ typedef struct ck_RowContact {
     double *state;
 } ck_RowContact;
 
-// What may touch something.
-//   mass      [n] kg, 0 where it is not free
-typedef struct ck_RowContactSetup {
-    ck_Touched touched;
-    ck_Follower follower;
-    const double *mass;
-    int particles;
-} ck_RowContactSetup;
-
-// Beside a list, in its order. Surfaces are copied. Errors: CK_NO_MEMORY. Free with ck_row_contact_destroy.
-ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_RowContactSetup *setup, ck_Error *error);
-// The same of a projected cloth, whose places are then set by the caller.
+// Beside a list of so many particles, in its order; mass, [n], is then set by the caller. Surfaces are copied. Errors:
+// CK_NO_MEMORY. Free with ck_row_contact_destroy.
+ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Touched *touched, const ck_Follower *follower,
+                                int particles, ck_Error *error);
+// The same of a projected cloth, with the masses there; its places are then set by the caller.
 ck_Status ck_row_contact_of_rows(ck_RowContact **contact, const ck_RowContact *beside, const ck_Rows *rows,
                                  ck_Error *error);
 void ck_row_contact_destroy(ck_RowContact *contact);

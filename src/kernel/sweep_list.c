@@ -81,7 +81,7 @@ static bool schedule(ck_SweepList *list, const ck_Model *model, const ck_SweepRu
     if (has_memory) {
         link_springs(&waiting, model, last);
         list->packs = fill_packs(&waiting, order);
-        if ((long)list->packs * LEAST_FILL <= model->spring_count)
+        if ((long)list->packs * LEAST_FILL <= model->spring_count || ck_sweep_has_colours(model, rule->projection))
             list->order = realloc(order, sizeof *order * CK_PACK * (size_t)list->packs);
     }
     if (!list->order) free(order);

@@ -1,6 +1,6 @@
 // Gauss–Seidel sweeps over any springs, in vectors: in packs that share no particle, and such that of two springs which
-// share one the first in ck_sweep_order still comes first. So a sweep is that in this order, but for rounding, and so is
-// its reverse.
+// share one the first in ck_sweep_order still comes first. So a sweep is that in this order, but for rounding, and so
+// is its reverse.
 #ifndef CK_SWEEP_LIST_H
 #define CK_SWEEP_LIST_H
 
@@ -21,7 +21,8 @@ typedef struct ck_SweepRule {
     const double *inverse_mass, *compliance, *gamma;
 } ck_SweepRule;
 
-// *list is NULL where packs would be less than a quarter full, as along a rope: it is swept one by one as fast.
+// *list is NULL where packs would be less than a quarter full, as along a rope: it is swept one by one as fast. Never
+// where the order has colours.
 // Memory: 8 doubles a particle, 5 to 9 a spring. Errors: CK_NO_MEMORY. Free with ck_sweep_list_destroy, which accepts
 // NULL.
 ck_Status ck_sweep_list_create(ck_SweepList **list, const ck_Loops *loops, const ck_Model *model,

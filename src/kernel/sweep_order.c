@@ -2,6 +2,7 @@
 
 #include "constraint_kernel.h"
 #include "constraint_loop.h"
+#include "spring_list.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -47,11 +48,8 @@ static long when_visited(const Way *way, const ck_Spring *spring) {
 // Springs that are coloured together: so many that packs are full, and so few that they stay near.
 #define PART 256
 #define COLOURS 64
-
-// Correction goes round a mesh in many ways; along a rope, or over a tree, it goes in the springs' order alone.
-static bool is_meshed(const ck_Model *model) {
-    return 2L * model->spring_count > 3L * model->particle_count;
-}
+// Springs of a body at least, so that there are some of each.
+#define LEAST_COLOURED 128
 
 // Orders springs from one on by colours: each has the first that neither of its particles has yet; of more than there
 // are, the last.
@@ -84,11 +82,18 @@ static ck_Status order_mesh(const ck_Model *model, int *order) {
     return CK_OK;
 }
 
+bool ck_sweep_has_colours(const ck_Model *model, ck_Projection projection) {
+    ck_RowSprings springs;
+    return projection == CK_PROJECT_SPRINGS && model->spring_count >= LEAST_COLOURED &&
+           2L * model->spring_count > 3L * model->particle_count && model->spring_count <= CK_MOST_LISTED &&
+           model->particle_count <= CK_MOST_LISTED && !ck_projection_fits(model, &springs);
+}
+
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order) {
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
     if (!ck_projection_fits(model, &springs))
-        return projection == CK_PROJECT_SPRINGS && is_meshed(model) ? order_mesh(model, order) : CK_OK;
+        return ck_sweep_has_colours(model, projection) ? order_mesh(model, order) : CK_OK;
     const Way way = {ck_rows_of(model), projection, sweeps == 1 || projection == CK_PROJECT_SPRINGS};
     Visit *visits = malloc(sizeof *visits * (size_t)model->spring_count);
     if (!visits) return CK_NO_MEMORY;

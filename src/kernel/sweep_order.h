@@ -15,11 +15,14 @@ typedef enum ck_Projection {
 } ck_Projection;
 
 // The springs of a model in the order in which a native sweep, of so many a substep, corrects them, [spring_count]:
-// that of constraint_kernel.h where it takes the model, else the model's. But of compliant springs, more than one and a
-// half a particle, 256 at a time are put in order of colours, of which none has two that share a particle: as good on a
-// mesh, while along a rope nothing would come far, and a sheet of bars shook with it (`ball_on_trampoline`). Errors:
+// that of constraint_kernel.h where it takes the model, else the model's, but for those in colours. Errors:
 // CK_NO_MEMORY.
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order);
+
+// True where that order goes by colours, of which none has two springs that share a particle, 256 springs at a time:
+// compliant springs, many of them, and more than one and a half a particle. As good on a mesh, while along a rope
+// nothing would come far, and a sheet of bars shook with it (`ball_on_trampoline`).
+bool ck_sweep_has_colours(const ck_Model *model, ck_Projection projection);
 
 // True where a substep's sweep goes through that order backwards: of several over bars, the second half. Sweeps and
 // their transposes in turn act as the gradient of something; those in one order only push in circles, too, and a sheet

@@ -374,6 +374,8 @@ bool ck_contact_meet(ck_Contact *contact, double mass, const double *field, doub
     // the mean velocity stands in the middle of the substep: half of it earlier is the start
     double speed[3] = {v[0], v[1], v[2]};
     ck_add_scaled(speed, -0.5 * contact->dt, field);
+    // the one before may have gone on beyond a jump of a collider's speed
+    if (contact->motion && contact->from > 0) follow_from(contact, 0);
     if (!hits(contact, x, speed, field)) return false;
     ck_contact_advance(contact, mass, x, speed, field);
     // and the next one's mean velocity is this one's end velocity and half a substep more

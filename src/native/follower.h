@@ -5,7 +5,7 @@
 #include "loops.h"
 #include "native.h"
 
-// Of native's own contact, which it only reads, so that several threads may call it.
+// Of native's own contact. Several threads may call it where no collider moves: then it is only read.
 ck_Follower ck_native_follower(ck_Native *native);
 
 #endif

@@ -112,7 +112,7 @@ void ck_native_meet(ck_Native *native,
                     void (*speeds)(const ck_Native *native, int particle, double *drift, double *now));
 void ck_native_turn(const void *state, ck_Turn *turn);
 
-// Moves every particle that is inside a collider out of it, with friction. Nothing without colliders.
+// Moves every particle that is inside a collider or a rigid body out of it, with friction.
 void ck_native_project(ck_Native *native);
 
 // False where any coordinate has left the finite numbers.

@@ -12,27 +12,25 @@ static ck_SweepRule rule_of(const ck_Native *native, ck_Projection projection) {
                           native->inverse_mass, native->compliance, native->gamma};
 }
 
+static ck_Status create_beside(ck_Native *native, ck_Error *error) {
+    const int count = native->model->collider_count;
+    ck_NearSurface *surfaces = malloc(sizeof *surfaces * (size_t)count + 1);
+    if (!surfaces) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    ck_near_surfaces(surfaces, native->contact);
+    const ck_Touched touched = {surfaces, count, native->dt, native->contact->slack};
+    const ck_Follower follower = ck_native_follower(native);
+    const ck_Status status =
+        ck_row_contact_create(&native->beside, &touched, &follower, ck_model_cloth_count(native->model), error);
+    free(surfaces);
+    return status;
+}
+
 // Where there are colliders, contact beside the list of springs, whose surfaces and masses serve rows, too.
 static ck_Status lay_beside(ck_Native *native, ck_Error *error) {
     const ck_Model *model = native->model;
-    const int particles = ck_model_cloth_count(model);
-    double *mass = malloc(sizeof *mass * (size_t)particles + 1);
-    ck_NearSurface *surfaces = malloc(sizeof *surfaces * (size_t)model->collider_count + 1);
-    ck_Status status = mass && surfaces ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
-    for (int i = 0; i < particles && !status; i++) mass[i] = native->inverse_mass[i] > 0 ? model->mass[i] : 0;
-    if (!status) {
-        ck_near_surfaces(surfaces, native->contact);
-        const ck_Touched touched = {surfaces, model->collider_count, native->dt, native->contact->slack};
-        ck_RowContact *beside;
-        status = ck_row_contact_create(
-            &beside, &(ck_RowContactSetup){touched, ck_native_follower(native), mass, particles}, error);
-        if (!status) {
-            ck_row_contact_destroy(native->beside);
-            native->beside = beside;
-        }
-    }
-    free(mass);
-    free(surfaces);
+    const ck_Status status = native->beside ? CK_OK : create_beside(native, error);
+    for (int i = 0; i < ck_model_cloth_count(model) && !status; i++)
+        native->beside->mass[i] = native->inverse_mass[i] > 0 ? model->mass[i] : 0;
     return status;
 }
 

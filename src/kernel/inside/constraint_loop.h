@@ -1,4 +1,4 @@
-// What the sweeps over rows of kernel_projection work on.
+// What the sweeps over rows of constraint_kernel.h work on.
 #ifndef CK_CONSTRAINT_LOOP_H
 #define CK_CONSTRAINT_LOOP_H
 

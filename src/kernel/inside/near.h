@@ -1,5 +1,5 @@
-// Which particles may come to touch a surface within a substep, a lane each. Included by the files that are compiled
-// once for each kind of vectors.
+// Surfaces as particles meet them, a lane each: how far one is, along what, and which may come to touch it within a
+// substep. Included by the files that are compiled once for each kind of vectors.
 #ifndef CK_NEAR_H
 #define CK_NEAR_H
 
@@ -45,6 +45,11 @@ CK_INLINE ck_Lanes ck_near_round_gap(ck_Lanes3 out, ck_Lanes radius, ck_Lanes3 *
     const ck_Lanes inverse = ck_lanes_plus(guess, 0.5 * guess, off);
     *normal = ck_lanes3_scale(inverse, out);
     return squared * inverse - radius;
+}
+
+// What of a vector leads along a surface.
+CK_INLINE ck_Lanes3 ck_near_along(ck_Lanes3 vector, ck_Lanes3 normal) {
+    return ck_lanes3_subtract_scaled(vector, ck_lanes3_dot(vector, normal), normal);
 }
 
 CK_INLINE ck_Lanes ck_near_sum(ck_Lanes3 a) {

@@ -21,8 +21,7 @@ ck_NearRow CK_LOOP(ck_near_row);
 void CK_LOOP(ck_near_row)(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
                           uint8_t *near) {
     for (int i = 0; i < cloth->rows.span; i++) near[i] = 0;
-    for (int k = 0; k < count; k++)
-        switch (ck_near_shape(&surfaces[k])) {
+    for (int k = 0; k < count; k++) switch (ck_near_shape(&surfaces[k])) {
         case CK_NEAR_PLANE: look(cloth, row, &surfaces[k], near, CK_NEAR_PLANE); break;
         case CK_NEAR_BALL: look(cloth, row, &surfaces[k], near, CK_NEAR_BALL); break;
         default: look(cloth, row, &surfaces[k], near, CK_NEAR_SOLID); break;

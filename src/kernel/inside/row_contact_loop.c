@@ -47,7 +47,8 @@ CK_INLINE ck_Lanes larger(ck_Lanes a, ck_Lanes b) {
 
 // A bit for each that may hit a surface on its way faster than what counts as rest, 2·|a·n|·dt. Beyond reach none does.
 // Else its speed inwards is there at most what it is here, what the field gives, and what the normal turns by on the
-// way: by at most reach/R, which counts for the field, too. Ways are in metres a substep, speed·dt and field·dt².
+// way: by at most reach/R, which counts for the field, too. Ways are in metres a substep, speed·dt at the start and
+// field·dt².
 CK_INLINE unsigned may_hit(const ck_Touched *touch, const ck_NearSurface *surface, ck_Lanes3 x, ck_Lanes3 way,
                            ck_Lanes3 gain, const ck_NearShape shape) {
     if (surface->moves) {
@@ -87,9 +88,9 @@ CK_INLINE unsigned may_hit_any(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 w
 }
 
 // The particle of one lane by itself, over the impacts on its way.
-//   way, gain  [3] m: its mean speed times dt, and the field's times dt²
-static __attribute__((noinline)) void meet(const ck_ProjectedCloth *cloth, const Group *group, int k, const double *way,
-                                           const double *gain, bool is_last) {
+//   mean, gain  [3] m: its mean speed times dt, and the field times dt²
+static __attribute__((noinline)) void meet(const ck_ProjectedCloth *cloth, const Group *group, int k,
+                                           const double *mean, const double *gain, bool is_last) {
     const ck_RowContact *contact = cloth->contact;
     const double dt = contact->touched.dt;
     const long tile = group->at.tile + k;
@@ -97,7 +98,7 @@ static __attribute__((noinline)) void meet(const ck_ProjectedCloth *cloth, const
     double *sum = contact->impulse + 3L * CK_STRIPE * group->row + group->lane + k;
     take(x, cloth->start + tile);
     for (int axis = 0; axis < 3; axis++) {
-        v[axis] = way[axis] / dt;
+        v[axis] = mean[axis] / dt;
         field[axis] = gain[axis] / (dt * dt);
     }
     const ck_Follower *follower = &contact->follower;
@@ -157,10 +158,6 @@ typedef struct Pressed {
     ck_Lanes depth;
 } Pressed;
 
-CK_INLINE ck_Lanes3 along_surface(ck_Lanes3 vector, ck_Lanes3 normal) {
-    return ck_lanes3_subtract_scaled(vector, ck_lanes3_dot(vector, normal), normal);
-}
-
 // What friction takes of a way along a surface: in all at most so many m.
 CK_INLINE ck_Lanes3 hold(ck_Lanes3 held, ck_Lanes3 along, ck_Lanes3 normal, ck_Lanes most) {
     const ck_Lanes3 wanted = ck_lanes3_subtract(held, along);
@@ -168,7 +165,7 @@ CK_INLINE ck_Lanes3 hold(ck_Lanes3 held, ck_Lanes3 along, ck_Lanes3 normal, ck_L
     ck_Lanes inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
     const ck_Lanes share = ck_lanes_choose(ck_lanes_less(most * most, squared), most * inverse, ck_lanes_all(1));
-    return along_surface(ck_lanes3_subtract(ck_lanes3_scale(share, wanted), held), normal);
+    return ck_near_along(ck_lanes3_subtract(ck_lanes3_scale(share, wanted), held), normal);
 }
 
 // Pushes out those of asked, 1 or 0, that are inside of a surface without sharp edges. Returns by how much, m.
@@ -185,7 +182,7 @@ CK_INLINE ck_Lanes push_out(const ck_NearSurface *surface, ck_Lanes asked, Press
     const ck_Lanes depth = pressed->depth + inside;
     ck_Lanes3 way = ck_lanes3_subtract(out, pressed->from);
     if (surface->moves) way = ck_lanes3_subtract(way, ck_lanes3_all(surface->way));
-    const ck_Lanes3 along = along_surface(way, normal);
+    const ck_Lanes3 along = ck_near_along(way, normal);
     const ck_Lanes3 taken = hold(pressed->held, along, normal, surface->friction * depth);
     pressed->depth = depth;
     pressed->x = ck_lanes3_choose(is_held, ck_lanes3_add(out, taken), before);
@@ -294,7 +291,13 @@ CK_INLINE bool press_group(const ck_RowContact *contact, const Group *group) {
     const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(contact->mass + group->at.single));
     if (has_solids) alone = ck_lanes_choose(is_free, find_alone(contact, group, x, depth, asked), none);
     asked = ck_lanes_choose(is_free, asked * (1 - alone), none);
-    if (ck_lanes_any_beyond(asked, 0)) press(contact, group, asked);
+    if (ck_lanes_any_beyond(asked, 0)) {
+        press(contact, group, asked);
+        // several may have pushed it farther than was thought
+        if (has_solids)
+            alone = larger(alone, asked * find_alone(contact, group, ck_lanes3_load(contact->x + group->at.tile),
+                                                     ck_lanes_load(contact->depth + group->at.single), none));
+    }
     for (unsigned left = ck_lanes_bits(ck_lanes_less(none, alone)); left; left &= left - 1)
         press_alone(contact, group, __builtin_ctz(left));
     return true;

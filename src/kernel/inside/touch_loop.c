@@ -62,10 +62,6 @@ CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes wa
     return found;
 }
 
-CK_INLINE ck_Lanes3 along_surface(ck_Lanes3 vector, ck_Lanes3 normal) {
-    return ck_lanes3_subtract_scaled(vector, ck_lanes3_dot(vector, normal), normal);
-}
-
 // Faster than rounding, of what friction, m/s², takes within a substep; squared, which needs no root.
 CK_INLINE ck_LaneMask slides_along(ck_Lanes friction, ck_Lanes3 along, double dt) {
     const ck_Lanes least = friction * (dt * 1e-9);
@@ -81,7 +77,7 @@ typedef struct Held {
 
 CK_INLINE Held hold(const Surface *surface, ck_Lanes3 normal, ck_Lanes3 v, ck_Lanes3 a, double dt) {
     const ck_Lanes none = {0};
-    const ck_Lanes3 along = along_surface(v, normal), push = along_surface(a, normal);
+    const ck_Lanes3 along = ck_near_along(v, normal), push = ck_near_along(a, normal);
     const ck_Lanes press = -ck_lanes3_dot(a, normal) - surface->curvature * ck_lanes3_dot(v, v);
     const ck_Lanes friction = surface->friction * press;
     const ck_LaneMask agrees = ck_lanes_less(none, ck_lanes3_dot(along, push));
@@ -135,7 +131,7 @@ CK_INLINE void slide(const Surface *surface, ck_Lanes3 *x, ck_Lanes3 *v, ck_Lane
     const ck_Lanes3 to = ck_lanes3_add(*x, flat), faster = ck_lanes3_add_scaled(*v, time, left);
     ck_Lanes3 out;
     const ck_Lanes gap = ck_near_round_gap(ck_lanes3_subtract(to, surface->point), surface->radius, &out);
-    const ck_Lanes3 turned = along_surface(faster, out);
+    const ck_Lanes3 turned = ck_near_along(faster, out);
     const ck_Lanes flat_squared = ck_lanes3_dot(flat, flat), turned_squared = ck_lanes3_dot(turned, turned);
     const ck_Lanes squared = flat_squared * surface->curvature * surface->curvature;
     const ck_Lanes cosine = inverse_length(one + squared), less = squared * cosine * cosine / (one + cosine);
@@ -158,7 +154,7 @@ CK_INLINE ck_Lanes3 press_in(const Surface *surface, ck_Lanes3 v, ck_Lanes3 a, d
     const ck_Lanes inwards = -ck_lanes3_dot(v, surface->normal), pull = ck_lanes3_dot(a, surface->normal);
     const ck_Lanes jump = ck_lanes_choose(ck_lanes_less(none, inwards), inwards, none);
     const ck_Lanes rest = 2 * dt * ck_lanes_choose(ck_lanes_less(pull, none), -pull, pull);
-    const ck_Lanes3 along = along_surface(v, surface->normal);
+    const ck_Lanes3 along = ck_near_along(v, surface->normal);
     const ck_Lanes squared = ck_lanes3_dot(along, along);
     const ck_Lanes loss = surface->friction * jump * inverse_length(squared);
     const ck_Lanes share = ck_lanes_choose(ck_lanes_less(loss, one), loss, one);
