@@ -28,20 +28,33 @@ static size_t row_bytes(const ck_ProjectedCloth *cloth) {
     return 6 * sizeof(ck_Real) * (size_t)cloth->rows.stride;
 }
 
+static void set(int *ends, int first, int second) {
+    ends[0] = first;
+    ends[1] = second;
+}
+
+// Springs straight down come with the row below.
+static void end_down(const ck_ProjectedCloth *cloth, int row, int *ends) {
+    const bool is_late = cloth->rule.projection == CK_PROJECT_SPRINGS;
+    set(ends, row - is_late, is_late && row + 1 == cloth->rows.rows ? row : -1);
+}
+
 // Sweeps down the rows: a substep's first one finds the row below begun.
 static void run_down(void *state, long block, int wave) {
     const ck_ProjectedCloth *cloth = state;
     const int rows = cloth->rows.rows;
-    ck_Visits visits = {.is_turned = false};
+    // what is not set is not read
+    ck_Visits visits;
+    visits.count = 0;
+    visits.is_turned = false;
     for (int i = 0; i < cloth->depth; i++) {
         const int row = wave - LAG * i;
         const long sweep = block * cloth->depth + i;
         if (row < 0 || row >= rows || sweep >= cloth->sweeps) continue;
-        const bool begins = sweep % cloth->rule.iterations == 0, is_late = cloth->rule.projection == CK_PROJECT_SPRINGS;
-        visits.at[visits.count++] = (ck_Visit){sweep,
-                                               row,
-                                               {begins && row == 0 ? 0 : -1, begins && row + 1 < rows ? row + 1 : -1},
-                                               {row - is_late, is_late && row + 1 == rows ? row : -1}};
+        const bool begins = sweep % cloth->rule.iterations == 0;
+        if (cloth->contact) end_down(cloth, row, visits.ends[visits.count]);
+        visits.at[visits.count++] =
+            (ck_Visit){sweep, row, {begins && row == 0 ? 0 : -1, begins && row + 1 < rows ? row + 1 : -1}};
     }
     cloth->loops->projection_visits(cloth, &visits);
 }
@@ -91,34 +104,43 @@ static int place_of(const BothWays *ways, const Stage *stage, int sweep) {
     return stage->is_out ? ways->places - 1 - gone : gone;
 }
 
-static ck_Visit visit_upper(const BothWays *ways, long sweep, int place, bool is_out) {
+static ck_Visit visit_upper(const BothWays *ways, long sweep, int place) {
     const bool begins = sweep % (ways->in + ways->out) == 0;
-    return (ck_Visit){sweep,
-                      place,
-                      {begins && place == 0 ? 0 : -1, begins ? place + 1 : -1},
-                      {place + is_out, is_out && place == 0 ? 0 : -1}};
+    return (ck_Visit){sweep, place, {begins && place == 0 ? 0 : -1, begins ? place + 1 : -1}};
+}
+
+static void end_upper(int place, bool is_out, int *ends) {
+    set(ends, place + is_out, is_out && place == 0 ? 0 : -1);
 }
 
 // The upper half, where there is one, has begun the row that both share, and on the way back is the last to leave it.
-static ck_Visit visit_lower(const BothWays *ways, long sweep, int place, bool is_out) {
+static ck_Visit visit_lower(const BothWays *ways, long sweep, int place) {
     const int row = ways->cloth->rows.rows - 1 - place;
     const bool begins = sweep % (ways->in + ways->out) == 0 && (row > ways->upper || ways->upper == 0);
+    return (ck_Visit){sweep, row, {begins ? row : -1, -1}};
+}
+
+static void end_lower(const BothWays *ways, int place, bool is_out, int *ends) {
+    const int rows = ways->cloth->rows.rows, row = rows - 1 - place;
     const bool leaves = is_out ? row > ways->upper || ways->upper == 0 : row == ways->upper;
-    return (ck_Visit){sweep,
-                      row,
-                      {begins ? row : -1, -1},
-                      {!is_out && row + 1 < ways->cloth->rows.rows ? row + 1 : -1, leaves ? row : -1}};
+    set(ends, !is_out && row + 1 < rows ? row + 1 : -1, leaves ? row : -1);
 }
 
 static void run_both_ways(void *state, long step, bool runs_upper, bool runs_lower) {
     const BothWays *ways = state;
     const Stage stage = stage_at(ways, step);
-    ck_Visits visits = {.is_turned = stage.is_out};
+    ck_Visits visits;
+    visits.count = 0;
+    visits.is_turned = stage.is_out;
     for (int i = stage.first; i < stage.end; i++) {
         const int place = place_of(ways, &stage, i);
-        if (runs_upper && place < ways->upper)
-            visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place, stage.is_out);
-        if (runs_lower) visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place, stage.is_out);
+        if (runs_upper && place < ways->upper) {
+            if (ways->cloth->contact) end_upper(place, stage.is_out, visits.ends[visits.count]);
+            visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place);
+        }
+        if (!runs_lower) continue;
+        if (ways->cloth->contact) end_lower(ways, place, stage.is_out, visits.ends[visits.count]);
+        visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place);
     }
     ways->cloth->loops->projection_visits(ways->cloth, &visits);
 }

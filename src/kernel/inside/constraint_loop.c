@@ -237,36 +237,59 @@ CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool 
     if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
 }
 
-CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
-    cloth->far_from[row] = LONG_MAX;
-    if (cloth->contact) cloth->loops->row_fly(cloth, row, is_last);
-    for (int i = 0; i < cloth->rows.span && !cloth->contact; i++)
-        for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
-            const ck_Place at = ck_rows_place(&cloth->rows, row, i);
-            predict_vector(cloth, (ck_Place){at.single + lane, at.tile + lane}, is_last);
-        }
+CK_INLINE void forget_multipliers(const ck_ProjectedCloth *cloth, int row) {
     const size_t bytes = sizeof(ck_Real) * (size_t)cloth->rows.stride;
     for (int colour = CK_ALONG_LAST; colour <= CK_DOWN_LEFT && cloth->multipliers; colour++)
         memset(cloth->multiplier[colour] + row * cloth->rows.stride, 0, bytes);
 }
 
+// What is seldom stands out of line, and with the structure that is shared: the copy's address is not to leave the
+// loop.
+static __attribute__((noinline)) void fly_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
+    cloth->far_from[row] = LONG_MAX;
+    cloth->loops->row_fly(cloth, row, is_last);
+    forget_multipliers(cloth, row);
+}
+
+static __attribute__((noinline)) void press_rows(const ck_ProjectedCloth *cloth, const ck_Visits *visits) {
+    for (int i = 0; i < visits->count; i++)
+        for (int k = 0; k < 2; k++)
+            if (visits->ends[i][k] >= 0) cloth->loops->row_press(cloth->contact, visits->ends[i][k]);
+}
+
+CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
+    cloth->far_from[row] = LONG_MAX;
+    for (int i = 0; i < cloth->rows.span; i++)
+        for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
+            const ck_Place at = ck_rows_place(&cloth->rows, row, i);
+            predict_vector(cloth, (ck_Place){at.single + lane, at.tile + lane}, is_last);
+        }
+    forget_multipliers(cloth, row);
+}
+
+CK_INLINE void begin_row(const ck_ProjectedCloth *cloth, const ck_ProjectedCloth *shared, int row, bool is_last) {
+    if (__builtin_expect(cloth->contact != NULL, 0))
+        fly_row(shared, row, is_last);
+    else
+        predict_row(cloth, row, is_last);
+}
+
 // Colour by colour, so that each sweep in flight has the others' work to wait with, and each in a loop of its own,
 // which takes a seventh less time on a narrow cloth.
-CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_Visits *visits, const int terms) {
+CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_ProjectedCloth *shared, const ck_Visits *visits,
+                           const int terms) {
     for (int i = 0; i < visits->count; i++) {
         const ck_Visit *visit = &visits->at[i];
         bool is_last = visit->sweep + cloth->rule.iterations >= cloth->sweeps;
         for (int k = 0; k < 2; k++)
-            if (visit->begins[k] >= 0) predict_row(cloth, visit->begins[k], is_last);
+            if (visit->begins[k] >= 0) begin_row(cloth, shared, visit->begins[k], is_last);
     }
     const int together = ck_rows_are_wide(&cloth->rows) ? 1 : visits->count;
     for (int first = 0; first < visits->count; first += together)
 #pragma GCC unroll 6
         for (int turn = 0; turn < COLOURS; turn++)
             project_colour(cloth, visits->at + first, together, colour_at(turn, terms), terms);
-    for (int i = 0; i < visits->count && cloth->contact; i++)
-        for (int k = 0; k < 2; k++)
-            if (visits->at[i].ends[k] >= 0) cloth->loops->row_press(cloth->contact, visits->at[i].ends[k]);
+    if (__builtin_expect(cloth->contact != NULL, 0)) press_rows(shared, visits);
 }
 
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.
@@ -276,13 +299,13 @@ void CK_LOOP(ck_projection_visits)(const ck_ProjectedCloth *shared, const ck_Vis
     switch (cloth.terms) {
     case BARS:
         if (visits->is_turned)
-            run_colours(&cloth, visits, BARS | TURNED);
+            run_colours(&cloth, shared, visits, BARS | TURNED);
         else
-            run_colours(&cloth, visits, BARS);
+            run_colours(&cloth, shared, visits, BARS);
         break;
-    case 0: run_colours(&cloth, visits, 0); break;
-    case DAMPED: run_colours(&cloth, visits, DAMPED); break;
-    case REPEATED: run_colours(&cloth, visits, REPEATED); break;
-    default: run_colours(&cloth, visits, REPEATED | DAMPED); break;
+    case 0: run_colours(&cloth, shared, visits, 0); break;
+    case DAMPED: run_colours(&cloth, shared, visits, DAMPED); break;
+    case REPEATED: run_colours(&cloth, shared, visits, REPEATED); break;
+    default: run_colours(&cloth, shared, visits, REPEATED | DAMPED); break;
     }
 }

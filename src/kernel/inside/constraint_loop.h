@@ -71,20 +71,22 @@ enum {
     CK_SWEEP_FAR = 32
 };
 
-// A sweep at a row; and the rows, or -1, that are to begin the substep before it, and those that it then is done with.
+// A sweep at a row; and the rows, or -1, that are to begin the substep before it.
 typedef struct ck_Visit {
     long sweep;
-    int row, begins[2], ends[2];
+    int row, begins[2];
 } ck_Visit;
 
 // The most that are in flight together: of one sweep each, or of both halves.
 #define CK_MOST_VISITS 64
 
 // Visits that touch no particle of each other's, or are done colour by colour where they do.
+//   ends  the rows, or -1, that each then is done with; set where there is contact, which comes after that
 typedef struct ck_Visits {
     int count;
     bool is_turned;
     ck_Visit at[CK_MOST_VISITS];
+    int ends[CK_MOST_VISITS][2];
 } ck_Visits;
 
 #endif
