@@ -52,8 +52,7 @@ typedef struct ck_ProjectionSetup {
 
 // In the precision of the loops: in single precision, places are told from an origin that moves with the cloth.
 // Surfaces are copied. Memory: 10 doubles a particle, 8 more where there are surfaces, and one a spring for XPBD with
-// several sweeps. Errors: CK_NO_MEMORY. Free with
-// ck_projection_destroy.
+// several sweeps. Errors: CK_NO_MEMORY. Free with ck_projection_destroy.
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 

@@ -55,6 +55,9 @@ typedef struct ck_Touched {
 typedef bool ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
 typedef void ck_TouchHold(double dt, const ck_Loose *loose);
 
+// Between several surfaces, one pushes into another: so many rounds of all of them at most.
+#define CK_PUSH_ROUNDS 16
+
 // Follows one particle at a time where no loop does, for bodies whose constraints are projected. Called from several
 // threads at once.
 typedef struct ck_Follower {

@@ -1,6 +1,7 @@
 #include "contact.h"
 
 #include "collider.h"
+#include "loops.h"
 #include "path.h"
 #include "slide.h"
 #include "vector.h"
@@ -425,11 +426,8 @@ static bool push_out(ck_Contact *contact, double mass, const double *start, ck_P
     return pushed;
 }
 
-// Between several colliders, one pushes into another.
-#define PUSH_ROUNDS 16
-
 void ck_contact_project(ck_Contact *contact, double mass, const double *start, ck_Pressed *pressed, double *x) {
-    int rounds = contact->model->collider_count > 1 ? PUSH_ROUNDS : 1;
+    int rounds = contact->model->collider_count > 1 ? CK_PUSH_ROUNDS : 1;
     if (is_far(contact, x, pressed->depth)) return;
     while (rounds-- && push_out(contact, mass, start, pressed, x))
         ;

@@ -217,9 +217,6 @@ static __attribute__((noinline)) void press_alone(const ck_RowContact *contact, 
     for (int axis = 0; axis < 3; axis++) sum[axis * CK_STRIPE] += impulse[axis];
 }
 
-// Between several surfaces, one pushes into another; see contact.c.
-#define PUSH_ROUNDS 16
-
 // Those of asked, 1 or 0, by what has no sharp edges.
 static __attribute__((noinline)) void press(const ck_RowContact *contact, const Group *group, ck_Lanes asked) {
     const ck_Touched *touch = &contact->touched;
@@ -229,7 +226,7 @@ static __attribute__((noinline)) void press(const ck_RowContact *contact, const 
                        .from = ck_lanes3_load(contact->from + at.tile),
                        .held = ck_lanes3_load(contact->held + at.tile),
                        .depth = ck_lanes_load(contact->depth + at.single)};
-    for (int round = 0; round < (touch->count > 1 ? PUSH_ROUNDS : 1) && ck_lanes_any_beyond(asked, 0); round++) {
+    for (int round = 0; round < (touch->count > 1 ? CK_PUSH_ROUNDS : 1) && ck_lanes_any_beyond(asked, 0); round++) {
         ck_Lanes pushed = none;
         for (int k = 0; k < touch->count; k++)
             if (!is_sharp(&contact->ends[k])) pushed = larger(pushed, push_out(&contact->ends[k], asked, &pressed));
