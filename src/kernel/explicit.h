@@ -21,7 +21,7 @@ typedef struct ck_ExplicitSetup {
 } ck_ExplicitSetup;
 
 // In rows where the model is a regular cloth, else as a list, whatever springs it has. What air, hinges, driven pins
-// and rigid bodies do is left out: see ck_explicit_pull. Memory: rows 13 doubles a particle; lists 22, and 4 to 6 a
+// and rigid bodies do is left out: see ck_explicit_pull. Memory: rows 13 doubles a particle; lists 27, and 1 to 9 a
 // spring. Errors: CK_NO_MEMORY; CK_REFUSED for a list beyond CK_MOST_LISTED. Free with ck_explicit_destroy.
 ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
 ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);

@@ -4,19 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Doubles between arrays, so that equal places do not share a cache set.
+#define APART 40
+
+// A pass that advances leaves its points in the other array.
 static void run_chunk(void *state, long pass, int chunk) {
     ck_ExplicitList *list = state;
     if (pass == 0)
-        list->loops->list_start(list, chunk);
+        list->loops->list_start(list, chunk, list->now);
     else
-        list->loops->list_chunk(list, chunk, pass < list->substeps);
+        list->loops->list_chunk(list, chunk, (list->now + pass - 1) % 2, pass < list->substeps);
 }
 
 static size_t chunk_bytes(const ck_SpringList *springs) {
     const size_t places = (size_t)(springs->places / springs->chunks + 1),
-                 packs = (size_t)(springs->pack_start[springs->chunks] / springs->chunks + 1);
-    return places * (5 * CK_POINT + 2) * sizeof(double) +
-           packs * (sizeof(ck_Pack) + CK_PACK * (CK_POINT + 2) * sizeof(double));
+                 vectors = (size_t)(springs->first[springs->places / CK_STRIPE] / springs->chunks + 1);
+    size_t value_bytes = 0;
+    for (int value = 0; value < CK_SPRING_VALUES; value++)
+        value_bytes += springs->values[value].step ? sizeof(double) : 0;
+    return places * (4 * CK_POINT + 3 * 3 + 2) * sizeof(double) +
+           vectors * CK_STRIPE * (sizeof(uint32_t) + value_bytes);
 }
 
 static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
@@ -24,6 +31,7 @@ static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
     list->substeps = substeps;
     ck_passes_run(waves,
                   &(ck_Passes){run_chunk, list, substeps + 1L, list->springs.chunks, 1, chunk_bytes(&list->springs)});
+    list->now = (list->now + (int)((substeps + 1) % 2)) % 2;
 }
 
 static void kick(ck_Explicit *body) {
@@ -32,21 +40,25 @@ static void kick(ck_Explicit *body) {
     for (int chunk = 0; chunk < list->springs.chunks; chunk++) run_chunk(list, 1, chunk);
 }
 
+// From a point to where the coordinates of loose ones stand so far apart.
 CK_INLINE void take_point(double *to, long stride, const double *from) {
     for (int axis = 0; axis < 3; axis++) to[axis * stride] = from[axis];
 }
 
+CK_INLINE void put_point(double *to, const double *from, long stride) {
+    for (int axis = 0; axis < 3; axis++) to[axis] = from[axis * stride];
+}
+
 // Those of a chunk that are marked near, and free; returns how many there are by then.
 static int take_chunk(const ck_ExplicitList *list, int chunk, ck_Near *near, const ck_Loose *loose) {
-    const int *start = list->springs.chunk_start + chunk;
     int found = loose->count;
-    for (int quad = start[0] / CK_QUAD; quad < start[1] / CK_QUAD; quad++)
-        for (unsigned bits = list->near[quad]; bits; bits &= bits - 1) {
-            const int place = CK_QUAD * quad + __builtin_ctz(bits);
+    for (int group = list->springs.chunk_start[chunk]; group < list->springs.chunk_start[chunk + 1]; group++)
+        for (unsigned bits = list->near[group]; bits; bits &= bits - 1) {
+            const long place = CK_STRIPE * (long)group + __builtin_ctz(bits);
             if (!(list->gain[place] > 0)) continue;
-            take_point(loose->x + found, loose->stride, list->seats[place].x);
-            take_point(loose->v + found, loose->stride, list->v + CK_POINT * (long)place);
-            take_point(loose->a + found, loose->stride, list->a + CK_POINT * (long)place);
+            take_point(loose->x + found, loose->stride, list->x[list->now] + CK_POINT * place);
+            ck_tile_take(loose->v + found, loose->stride, list->v + ck_tile_of(place));
+            ck_tile_take(loose->a + found, loose->stride, list->a + ck_tile_of(place));
             near[found++] = (ck_Near){list->springs.particle[place], place};
         }
     return found;
@@ -57,11 +69,11 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
     bool are_kept = true;
     loose->count = 0;
     for (int chunk = 0; chunk < list->springs.chunks; chunk++) {
-        const int *start = list->springs.chunk_start + chunk, first = start[0] / CK_QUAD;
+        const int *start = list->springs.chunk_start + chunk;
         ck_NearPart *part = &list->parts[chunk];
         list->loops->near_chunk(list, chunk, surfaces, count, list->near);
-        if (!ck_near_is_kept(part, loose->count, list->near + first, list->near_before + first,
-                             (size_t)(start[1] / CK_QUAD - first))) {
+        if (!ck_near_is_kept(part, loose->count, list->near + start[0], list->near_before + start[0],
+                             (size_t)(start[1] - start[0]))) {
             *part = (ck_NearPart){loose->count, take_chunk(list, chunk, near, loose) - loose->count};
             are_kept = false;
         }
@@ -73,54 +85,63 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
 
 static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    for (int i = 0; i < loose->count; i++) take_point(loose->a + i, loose->stride, list->a + CK_POINT * near[i].place);
+    for (int i = 0; i < loose->count; i++)
+        ck_tile_take(loose->a + i, loose->stride, list->a + ck_tile_of(near[i].place));
 }
 
 static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    for (int i = 0; i < loose->count; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            const long from = axis * loose->stride + i;
-            if (is_kicked) {
-                list->v[CK_POINT * near[i].place + axis] = loose->v[from];
-                continue;
-            }
-            list->seats[near[i].place].x[axis] = loose->x[from];
-            list->seats[near[i].place].predicted[axis] = loose->predicted[from];
+    for (int i = 0; i < loose->count; i++) {
+        const long place = near[i].place;
+        if (is_kicked) {
+            ck_tile_put(list->v + ck_tile_of(place), loose->v + i, loose->stride);
+            continue;
         }
+        put_point(list->x[list->now] + CK_POINT * place, loose->x + i, loose->stride);
+        put_point(list->predicted[list->now] + CK_POINT * place, loose->predicted + i, loose->stride);
+    }
 }
 
-// From [3*n] to places that stand so many doubles apart, and back.
-static void scatter(const ck_ExplicitList *list, double *places, long apart, const double *vectors) {
+// From [3*n] to points, and back.
+static void scatter_points(const ck_ExplicitList *list, double *points, const double *vectors) {
     for (int i = 0; i < list->springs.places; i++)
         if (list->springs.particle[i] >= 0)
-            memcpy(places + apart * i, vectors + 3 * (long)list->springs.particle[i], 3 * sizeof *places);
+            put_point(points + CK_POINT * (long)i, vectors + 3 * (long)list->springs.particle[i], 1);
 }
 
-static void gather(const ck_ExplicitList *list, double *vectors, const double *places, long apart) {
+static void gather_points(const ck_ExplicitList *list, double *vectors, const double *points) {
     for (int i = 0; i < list->springs.places; i++)
         if (list->springs.particle[i] >= 0)
-            memcpy(vectors + 3 * (long)list->springs.particle[i], places + apart * i, 3 * sizeof *places);
+            take_point(vectors + 3 * (long)list->springs.particle[i], 1, points + CK_POINT * (long)i);
 }
 
-static void seat(const ck_ExplicitList *list, const double *position, const double *predicted) {
-    scatter(list, list->seats->x, sizeof(ck_Seat) / sizeof(double), position);
-    scatter(list, list->seats->predicted, sizeof(ck_Seat) / sizeof(double), predicted);
+// The same to tiles, and back.
+static void scatter_tiles(const ck_ExplicitList *list, double *tiles, const double *vectors) {
+    for (int i = 0; i < list->springs.places; i++)
+        if (list->springs.particle[i] >= 0)
+            ck_tile_put(tiles + ck_tile_of(i), vectors + 3 * (long)list->springs.particle[i], 1);
+}
+
+static void gather_tiles(const ck_ExplicitList *list, double *vectors, const double *tiles) {
+    for (int i = 0; i < list->springs.places; i++)
+        if (list->springs.particle[i] >= 0)
+            ck_tile_take(vectors + 3 * (long)list->springs.particle[i], 1, tiles + ck_tile_of(i));
 }
 
 static void read_state(const ck_Explicit *body, double *position, double *velocity) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    gather(list, position, list->seats->x, sizeof(ck_Seat) / sizeof(double));
-    gather(list, velocity, list->v, CK_POINT);
+    gather_points(list, position, list->x[list->now]);
+    gather_tiles(list, velocity, list->v);
 }
 
 // A kick that goes nowhere: v is not read where others step.
 void ck_explicit_pull(ck_Explicit *body, const double *position, const double *velocity, double *acceleration) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
-    seat(list, position, velocity);
-    memset(list->v, 0, CK_POINT * sizeof(double) * (size_t)list->springs.places);
+    scatter_points(list, list->x[list->now], position);
+    scatter_points(list, list->predicted[list->now], velocity);
+    memset(list->v, 0, 3 * sizeof(double) * (size_t)list->springs.places);
     kick(body);
-    gather(list, acceleration, list->a, CK_POINT);
+    gather_tiles(list, acceleration, list->a);
 }
 
 static void destroy(ck_Explicit *body) {
@@ -132,7 +153,7 @@ static void destroy(ck_Explicit *body) {
 }
 
 static int terms_of(const ck_Model *model) {
-    int terms = 0;
+    int terms = model->drag > 0 ? CK_LIST_DRAGGED : 0;
     for (int i = 0; i < model->spring_count; i++)
         terms |=
             (model->springs[i].damping > 0 ? CK_LIST_DAMPED : 0) | (model->springs[i].pulls_only ? CK_LIST_HANGS : 0);
@@ -148,7 +169,7 @@ static void pace(ck_Explicit *body, const ck_ExplicitSetup *setup) {
 
 static const double *acceleration(const ck_Explicit *body, size_t *count) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    *count = CK_POINT * (size_t)list->springs.places;
+    *count = 3 * (size_t)list->springs.places;
     return list->a;
 }
 
@@ -157,36 +178,39 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     const ck_Model *model = setup->model;
     for (int i = 0; i < model->particle_count; i++) {
         const int at = list->springs.place[i];
-        double *load = list->load + CK_POINT * (long)at;
+        double load[3];
         list->resistance[at] = model->drag * model->mass[i];
         ck_model_field(model, i, load);
         for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
+        ck_tile_put(list->load + ck_tile_of(at), load, 1);
     }
     for (int chunk = 0; chunk < list->springs.chunks; chunk++) list->parts[chunk].first = -1;
     pace(body, setup);
-    seat(list, setup->position, setup->velocity);
+    scatter_points(list, list->x[list->now], setup->position);
+    scatter_points(list, list->predicted[list->now], setup->velocity);
     // where it is, and the acceleration there: what a kick gives that goes nowhere
     kick(body);
-    scatter(list, list->v, CK_POINT, setup->velocity);
+    scatter_tiles(list, list->v, setup->velocity);
 }
 
 static bool allocate(ck_ExplicitList *list) {
-    const size_t places = (size_t)list->springs.places,
-                 springs = (size_t)list->springs.pack_start[list->springs.chunks] * CK_PACK + 2;
-    const size_t bytes = (places * (5 * CK_POINT + 3) + springs * CK_POINT + 8) * sizeof(double);
+    const size_t places = (size_t)list->springs.places, points = CK_POINT * places + APART, tiles = 3 * places + APART;
+    const size_t bytes = (4 * points + 3 * tiles + 2 * places) * sizeof(double) + 2 * places / CK_STRIPE;
     list->parts = malloc(sizeof *list->parts * (size_t)list->springs.chunks);
     list->state = aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!list->parts || !list->state) return false;
     memset(list->state, 0, bytes);
-    list->seats = (ck_Seat *)list->state;
-    list->force = list->state + 2 * CK_POINT * places;
-    list->v = list->force + CK_POINT * springs;
-    list->a = list->v + CK_POINT * places;
-    list->load = list->a + CK_POINT * places;
-    list->gain = list->load + CK_POINT * places;
+    for (int i = 0; i < 2; i++) {
+        list->x[i] = list->state + 2 * i * points;
+        list->predicted[i] = list->x[i] + points;
+    }
+    list->v = list->state + 4 * points;
+    list->a = list->v + tiles;
+    list->load = list->a + tiles;
+    list->gain = list->load + tiles;
     list->resistance = list->gain + places;
     list->near = (uint8_t *)(list->resistance + places);
-    list->near_before = list->near + places / CK_QUAD;
+    list->near_before = list->near + places / CK_STRIPE;
     return true;
 }
 

@@ -42,21 +42,6 @@ static void kick(ck_Explicit *body) {
 }
 
 #ifndef CK_SINGLE
-// From or to a tile, whose coordinates stand a stripe apart, where those of loose ones stand so far apart.
-CK_INLINE void take_tile(double *to, long stride, const double *from) {
-    const double x = from[0], y = from[CK_STRIPE], z = from[2 * CK_STRIPE];
-    to[0] = x;
-    to[stride] = y;
-    to[2 * stride] = z;
-}
-
-CK_INLINE void put_tile(double *to, const double *from, long stride) {
-    const double x = from[0], y = from[stride], z = from[2 * stride];
-    to[0] = x;
-    to[CK_STRIPE] = y;
-    to[2 * CK_STRIPE] = z;
-}
-
 // Those of a row that are marked near, and free; returns how many there are by then.
 static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, const ck_Loose *all) {
     const ck_ExplicitCloth cloth = *shared;
@@ -68,9 +53,9 @@ static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, cons
             const int lane = __builtin_ctz(bits), column = lane * cloth.rows.span + i;
             const long place = first.tile + 3 * CK_STRIPE * i + lane;
             if (column >= cloth.rows.columns || !(cloth.gain[first.single + CK_STRIPE * i + lane] > 0)) continue;
-            take_tile(loose.x + found, loose.stride, cloth.x + place);
-            take_tile(loose.v + found, loose.stride, cloth.v + place);
-            take_tile(loose.a + found, loose.stride, cloth.a + place);
+            ck_tile_take(loose.x + found, loose.stride, cloth.x + place);
+            ck_tile_take(loose.v + found, loose.stride, cloth.v + place);
+            ck_tile_take(loose.a + found, loose.stride, cloth.a + place);
             near[found++] = (ck_Near){row * cloth.rows.columns + column, place};
         }
     return found;
@@ -98,7 +83,7 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
 static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all) {
     const double *a = ((const ck_ExplicitCloth *)body)->a;
     const ck_Loose loose = *all;
-    for (int i = 0; i < loose.count; i++) take_tile(loose.a + i, loose.stride, a + near[i].place);
+    for (int i = 0; i < loose.count; i++) ck_tile_take(loose.a + i, loose.stride, a + near[i].place);
 }
 
 static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all, bool is_kicked) {
@@ -107,11 +92,11 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *al
     for (int i = 0; i < loose.count; i++) {
         const long place = near[i].place;
         if (is_kicked) {
-            put_tile(cloth.v + place, loose.v + i, loose.stride);
+            ck_tile_put(cloth.v + place, loose.v + i, loose.stride);
             continue;
         }
-        put_tile(cloth.x + place, loose.x + i, loose.stride);
-        put_tile(cloth.predicted + place, loose.predicted + i, loose.stride);
+        ck_tile_put(cloth.x + place, loose.x + i, loose.stride);
+        ck_tile_put(cloth.predicted + place, loose.predicted + i, loose.stride);
     }
 }
 

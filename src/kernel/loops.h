@@ -74,9 +74,10 @@ typedef struct ck_Follower {
 // Which particles of a row may come to touch one within a substep; see near_loop.c.
 typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
                         uint8_t *near);
-// The same over a chunk of a list of springs; see list_loop.h.
-typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk);
-typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, bool advances);
+// The same over a chunk of a list of springs, from one of its two arrays of points, into the other where it advances;
+// see list_loop.h.
+typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk, int now);
+typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, int from, bool advances);
 typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
                           uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.

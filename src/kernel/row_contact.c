@@ -88,15 +88,14 @@ void ck_row_contact_begin(ck_RowContact *contact, int row) {
 
 void ck_row_contact_take(double *tiles, const double *vectors, int particles) {
     for (int i = 0; i < particles; i++)
-        for (int axis = 0; axis < 3; axis++)
-            tiles[ck_row_contact_tile(i) + axis * CK_STRIPE] = vectors[3 * (long)i + axis];
+        for (int axis = 0; axis < 3; axis++) tiles[ck_tile_of(i) + axis * CK_STRIPE] = vectors[3 * (long)i + axis];
 }
 
 void ck_row_contact_give(const ck_RowContact *contact, int row, double *position, int particles) {
     const int first = row * CK_STRIPE, end = first + CK_STRIPE < particles ? first + CK_STRIPE : particles;
     for (int i = first; i < end; i++)
         for (int axis = 0; axis < 3; axis++)
-            position[3 * (long)i + axis] = contact->x[ck_row_contact_tile(i) + axis * CK_STRIPE];
+            position[3 * (long)i + axis] = contact->x[ck_tile_of(i) + axis * CK_STRIPE];
 }
 
 void ck_row_contact_forget_impulse(ck_RowContact *contact) {

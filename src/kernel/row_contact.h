@@ -42,11 +42,6 @@ ck_NearSurface *ck_row_contact_surfaces(ck_RowContact *contact, bool at_end);
 // Nothing is pressed at the start of a substep.
 void ck_row_contact_begin(ck_RowContact *contact, int row);
 
-// Where a particle's first coordinate stands in tiles beside a list; the others stand CK_STRIPE and twice that behind.
-CK_INLINE long ck_row_contact_tile(int particle) {
-    return (long)particle / CK_STRIPE * 3 * CK_STRIPE + particle % CK_STRIPE;
-}
-
 // Of those beside a list: to tiles from [3*n], and back a row's. Padding is left alone.
 void ck_row_contact_take(double *tiles, const double *vectors, int particles);
 void ck_row_contact_give(const ck_RowContact *contact, int row, double *position, int particles);

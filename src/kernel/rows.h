@@ -32,6 +32,12 @@ typedef struct ck_RowSprings {
     double damping;                                           // N·s/m
 } ck_RowSprings;
 
+// Where the first coordinate of a place stands among tiles, vectors of CK_STRIPE places whose three coordinates stand
+// side by side; the others stand CK_STRIPE and twice that behind.
+CK_INLINE long ck_tile_of(long place) {
+    return place / CK_STRIPE * 3 * CK_STRIPE + place % CK_STRIPE;
+}
+
 // True where springs, a uniform field, drag and colliders are all that moves a model's particles, at even steps.
 bool ck_only_springs_act(const ck_Model *model);
 

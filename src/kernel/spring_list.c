@@ -12,7 +12,6 @@ typedef struct Order {
     int *first, *neighbours; // [n + 1], [2*springs]: the particles that springs join to each
     int *rank, *queue;       // [n] of each particle in the new order, and back
     int *seen;               // [n] the number of the search that saw it last
-    int *by_rank, *springs;  // [n + 1], [springs]: those whose lower end has each rank
 } Order;
 
 static void free_order(Order *order) {
@@ -21,8 +20,6 @@ static void free_order(Order *order) {
     free(order->rank);
     free(order->queue);
     free(order->seen);
-    free(order->by_rank);
-    free(order->springs);
 }
 
 static int *allocate(int count) {
@@ -36,11 +33,8 @@ static bool allocate_order(Order *order, const ck_Model *model) {
                      .neighbours = allocate(2 * springs),
                      .rank = allocate(particles),
                      .queue = allocate(particles),
-                     .seen = allocate(particles),
-                     .by_rank = allocate(particles + 1),
-                     .springs = allocate(springs)};
-    return order->first && order->neighbours && order->rank && order->queue && order->seen && order->by_rank &&
-           order->springs;
+                     .seen = allocate(particles)};
+    return order->first && order->neighbours && order->rank && order->queue && order->seen;
 }
 
 // From counts at i + 1 to where each begins.
@@ -98,64 +92,52 @@ static int rank_particles(Order *order) {
     return reach;
 }
 
-// A spring's end whose rank is lower, or the other one.
-static int end_of(const Order *order, const ck_Spring *spring, bool is_lower) {
-    return (order->rank[spring->a] < order->rank[spring->b]) == is_lower ? spring->a : spring->b;
-}
-
-static void sort_springs(Order *order) {
-    const ck_Model *model = order->model;
-    int *fill = order->seen;
-    for (int i = 0; i < model->spring_count; i++)
-        order->by_rank[order->rank[end_of(order, &model->springs[i], true)] + 1]++;
-    add_up(order->by_rank, model->particle_count);
-    memcpy(fill, order->by_rank, sizeof *fill * (size_t)model->particle_count);
-    for (int i = 0; i < model->spring_count; i++)
-        order->springs[fill[order->rank[end_of(order, &model->springs[i], true)]]++] = i;
-}
-
-// A particle, and how many springs it is the end of, either way: places with as many need no springs without force.
-typedef struct Degrees {
-    int lower, upper, particle;
-} Degrees;
+// A particle, and how many springs it has.
+typedef struct Degree {
+    int springs, particle, rank;
+} Degree;
 
 static int compare_degrees(const void *a, const void *b) {
-    const Degrees *x = a, *y = b;
-    if (x->lower != y->lower) return x->lower - y->lower;
-    return x->upper != y->upper ? x->upper - y->upper : x->particle - y->particle;
+    const Degree *x = a, *y = b;
+    return x->springs != y->springs ? x->springs - y->springs : x->rank - y->rank;
 }
 
-// Springs of a quad after those of the one before.
-static void add_quad(ck_SpringList *list, int quad, const Degrees *degrees, int count) {
-    const ck_Quad *before = quad > 0 ? &list->quads[quad - 1] : &(ck_Quad){0};
-    ck_Quad *added = &list->quads[quad];
-    *added = (ck_Quad){before->first + CK_QUAD * (before->lower + before->upper), 0, 0};
-    for (int i = 0; i < count; i++) {
-        if (degrees[i].lower > added->lower) added->lower = degrees[i].lower;
-        if (degrees[i].upper > added->upper) added->upper = degrees[i].upper;
-    }
-}
-
-// Gives a chunk's particles their places from the first on; returns where the next chunk begins. At least one is spare.
-static int place_chunk(ck_SpringList *list, const Order *order, Degrees *degrees, int from, int to, int place) {
-    const int count = to - from, end = place + (count / CK_QUAD + 1) * CK_QUAD;
+// Gives a chunk's particles their places from a group on, those with as many springs together: each place of a group
+// has room for as many as any of them has. Returns where the next chunk begins.
+static int place_chunk(ck_SpringList *list, const Order *order, Degree *degrees, int from, int to, int group) {
+    const int count = to - from, end = group + (count + CK_STRIPE - 1) / CK_STRIPE;
     for (int rank = from; rank < to; rank++) {
-        const int particle = order->queue[rank], lower = order->by_rank[rank + 1] - order->by_rank[rank];
-        degrees[rank - from] = (Degrees){lower, order->first[particle + 1] - order->first[particle] - lower, particle};
+        const int particle = order->queue[rank];
+        degrees[rank - from] = (Degree){order->first[particle + 1] - order->first[particle], particle, rank};
     }
     qsort(degrees, (size_t)count, sizeof *degrees, compare_degrees);
-    for (int i = 0; place + i < end; i++) {
-        list->particle[place + i] = i < count ? degrees[i].particle : -1;
-        if (i < count) list->place[degrees[i].particle] = place + i;
-        if (i % CK_QUAD == 0)
-            add_quad(list, (place + i) / CK_QUAD, degrees + i, count - i < CK_QUAD ? count - i : CK_QUAD);
+    for (int i = 0; i < (end - group) * CK_STRIPE; i++) {
+        list->particle[group * CK_STRIPE + i] = i < count ? degrees[i].particle : -1;
+        if (i < count) list->place[degrees[i].particle] = group * CK_STRIPE + i;
+    }
+    for (int i = group; i < end; i++) {
+        const int last = (i - group + 1) * CK_STRIPE - 1;
+        list->first[i + 1] = list->first[i] + degrees[last < count ? last : count - 1].springs;
     }
     return end;
 }
 
-static void put_ends(ck_Pack *pack, int lane, int a, int b) {
-    pack->a[lane] = (uint32_t)a * CK_SEAT_BYTES;
-    pack->b[lane] = (uint32_t)b * CK_SEAT_BYTES;
+// All chunks' places. Returns false without memory.
+static bool place_particles(ck_SpringList *list, const Order *order, int size) {
+    const int particles = order->model->particle_count, groups = particles / CK_STRIPE + list->chunks;
+    Degree *degrees = malloc(sizeof *degrees * (size_t)size);
+    list->chunk_start = allocate(list->chunks);
+    list->place = allocate(particles);
+    list->particle = allocate(groups * CK_STRIPE);
+    list->first = allocate(groups);
+    const bool has_memory = degrees && list->chunk_start && list->place && list->particle && list->first;
+    for (int i = 0; i < list->chunks && has_memory; i++) {
+        const int from = i * size, to = particles - from < size ? particles : from + size;
+        list->chunk_start[i + 1] = place_chunk(list, order, degrees, from, to, list->chunk_start[i]);
+    }
+    if (has_memory) list->places = list->chunk_start[list->chunks] * CK_STRIPE;
+    free(degrees);
+    return has_memory;
 }
 
 static double value_of(const ck_Spring *spring, ck_SpringValue value) {
@@ -178,93 +160,51 @@ static bool is_alike(const ck_Model *model, ck_SpringValue value) {
     return true;
 }
 
-// Zeroed, so that what fills a pack up pulls nothing; where all are alike it has no length to pull along.
-static bool allocate_values(ck_SpringList *list, const ck_Model *model, size_t packs) {
+// Zeroed where there is no spring; where all are alike, such a one has no length to pull along.
+static bool allocate_values(ck_SpringList *list, const ck_Model *model, size_t vectors) {
     bool has_memory = true;
     for (int value = 0; value < CK_SPRING_VALUES; value++) {
         const bool alike = is_alike(model, value);
-        const size_t bytes = sizeof(double) * CK_PACK * (alike ? 1 : packs);
-        list->values[value] = (ck_SpringValues){aligned_alloc(64, bytes), alike ? 0 : CK_PACK};
+        const size_t bytes = sizeof(double) * CK_STRIPE * (alike ? 1 : vectors);
+        list->values[value] = (ck_SpringValues){aligned_alloc(64, bytes), alike ? 0 : CK_STRIPE};
         if (list->values[value].of) memset(list->values[value].of, 0, bytes);
         has_memory &= list->values[value].of != NULL;
     }
     return has_memory;
 }
 
-// Joins a place with its next spring of a kind; so many it has already.
-static void join(ck_SpringList *list, int place, int nth, uint32_t spring) {
-    list->joined[list->quads[place / CK_QUAD].first + nth * CK_QUAD + place % CK_QUAD] = spring * CK_FORCE_BYTES;
+// A place's next spring; so many it has already.
+static void join(ck_SpringList *list, int place, int nth, const ck_Spring *spring, int other) {
+    const int vector = list->first[place / CK_STRIPE] + nth, lane = place % CK_STRIPE;
+    list->to[CK_STRIPE * (long)vector + lane] = (uint32_t)other * CK_POINT_BYTES;
+    put_spring(list, vector, lane, spring);
 }
 
-// counts: [places] springs that a place has so far, either way.
-static void pack_chunk(ck_SpringList *list, const Order *order, int chunk, int from, int to, Degrees *counts) {
-    const int spare = list->chunk_start[chunk + 1] - 1;
-    for (int pack = list->pack_start[chunk], next = from; pack < list->pack_start[chunk + 1]; pack++)
-        for (int lane = 0; lane < CK_PACK; lane++, next++) {
-            if (next >= to) {
-                put_ends(&list->packs[pack], lane, spare, spare);
-                continue;
-            }
-            const ck_Spring *spring = &order->model->springs[order->springs[next]];
-            const int a = list->place[end_of(order, spring, true)], b = list->place[end_of(order, spring, false)];
-            const uint32_t number = (uint32_t)(pack * CK_PACK + lane);
-            put_ends(&list->packs[pack], lane, a, b);
-            put_spring(list, pack, lane, spring);
-            join(list, a, counts[a].lower++, number);
-            join(list, b, list->quads[b / CK_QUAD].lower + counts[b].upper++, number);
-        }
-}
-
-static int first_rank(const Order *order, int chunk, int size) {
-    const int particles = order->model->particle_count;
-    return chunk * size < particles ? chunk * size : particles;
-}
-
-// All chunks' places and numbers of packs. Returns false without memory.
-static bool place_particles(ck_SpringList *list, const Order *order, int size) {
-    const int particles = order->model->particle_count, most = particles + CK_QUAD * list->chunks;
-    Degrees *degrees = malloc(sizeof *degrees * (size_t)size);
-    list->chunk_start = allocate(list->chunks);
-    list->pack_start = allocate(list->chunks);
-    list->place = allocate(particles);
-    list->particle = allocate(most);
-    list->quads = calloc((size_t)(most / CK_QUAD), sizeof *list->quads);
-    const bool has_memory =
-        degrees && list->chunk_start && list->pack_start && list->place && list->particle && list->quads;
-    for (int i = 0; i < list->chunks && has_memory; i++) {
-        const int from = first_rank(order, i, size), to = first_rank(order, i + 1, size);
-        list->chunk_start[i + 1] = place_chunk(list, order, degrees, from, to, list->chunk_start[i]);
-        list->pack_start[i + 1] =
-            list->pack_start[i] + (order->by_rank[to] - order->by_rank[from] + CK_PACK - 1) / CK_PACK;
+static bool join_springs(ck_SpringList *list, const ck_Model *model) {
+    const int groups = list->places / CK_STRIPE;
+    const size_t vectors = (size_t)list->first[groups] + 1;
+    int *counts = allocate(list->places);
+    list->to = malloc(sizeof *list->to * CK_STRIPE * vectors);
+    const bool has_memory = allocate_values(list, model, vectors) && counts && list->to;
+    for (int group = 0; group < groups && has_memory; group++)
+        for (int i = list->first[group] * CK_STRIPE; i < list->first[group + 1] * CK_STRIPE; i++)
+            list->to[i] = (uint32_t)(group * CK_STRIPE + i % CK_STRIPE) * CK_POINT_BYTES;
+    for (int i = 0; i < model->spring_count && has_memory; i++) {
+        const int a = list->place[model->springs[i].a], b = list->place[model->springs[i].b];
+        join(list, a, counts[a]++, &model->springs[i], b);
+        join(list, b, counts[b]++, &model->springs[i], a);
     }
-    if (has_memory) list->places = list->chunk_start[list->chunks];
-    free(degrees);
-    return has_memory;
-}
-
-static bool pack_springs(ck_SpringList *list, const Order *order, int size) {
-    const int packs = list->pack_start[list->chunks];
-    const ck_Quad *last = &list->quads[list->places / CK_QUAD - 1];
-    const int joined = last->first + CK_QUAD * (last->lower + last->upper);
-    Degrees *counts = calloc((size_t)list->places, sizeof *counts);
-    list->joined = malloc(sizeof *list->joined * ((size_t)joined + 1));
-    list->packs = aligned_alloc(64, sizeof *list->packs * ((size_t)packs + 1));
-    const bool has_memory =
-        allocate_values(list, order->model, (size_t)packs + 1) && counts && list->joined && list->packs;
-    for (int i = 0; i < joined && has_memory; i++) list->joined[i] = (uint32_t)(packs * CK_PACK) * CK_FORCE_BYTES;
-    for (int i = 0; i < list->chunks && has_memory; i++)
-        pack_chunk(list, order, i, order->by_rank[first_rank(order, i, size)],
-                   order->by_rank[first_rank(order, i + 1, size)], counts);
     free(counts);
     return has_memory;
 }
 
+// Chunks of whole groups.
 static bool build(ck_SpringList *list, Order *order) {
     find_neighbours(order);
-    const int reach = rank_particles(order), size = reach > LEAST_CHUNK ? reach : LEAST_CHUNK;
+    const int reach = rank_particles(order),
+              size = ((reach > LEAST_CHUNK ? reach : LEAST_CHUNK) + CK_STRIPE - 1) / CK_STRIPE * CK_STRIPE;
     list->chunks = (order->model->particle_count + size - 1) / size;
-    sort_springs(order);
-    return place_particles(list, order, size) && pack_springs(list, order, size);
+    return place_particles(list, order, size) && join_springs(list, order->model);
 }
 
 ck_Status ck_spring_list_build(ck_SpringList *list, const ck_Model *model, ck_Error *error) {
@@ -280,12 +220,10 @@ ck_Status ck_spring_list_build(ck_SpringList *list, const ck_Model *model, ck_Er
 
 void ck_spring_list_free(ck_SpringList *list) {
     free(list->chunk_start);
-    free(list->pack_start);
     free(list->place);
     free(list->particle);
-    free(list->joined);
-    free(list->quads);
-    free(list->packs);
+    free(list->first);
+    free(list->to);
     for (int value = 0; value < CK_SPRING_VALUES; value++) free(list->values[value].of);
     *list = (ck_SpringList){0};
 }

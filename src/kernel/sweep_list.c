@@ -94,7 +94,7 @@ static bool schedule(ck_SweepList *list, const ck_Model *model, const ck_SweepRu
 }
 
 static void put_ends(ck_SweepList *list, const ck_Model *model) {
-    const uint32_t bytes = CK_POINT * sizeof(double), spare = (uint32_t)model->particle_count * bytes;
+    const uint32_t bytes = CK_POINT_BYTES, spare = (uint32_t)model->particle_count * bytes;
     for (int i = 0; i < list->packs * CK_PACK; i++) {
         const ck_Spring *spring = list->order[i] >= 0 ? &model->springs[list->order[i]] : NULL;
         list->ends[i / CK_PACK].a[i % CK_PACK] = spring ? (uint32_t)spring->a * bytes : spare;

@@ -170,7 +170,7 @@ static void meet(ck_Native *native, int particle, const double *next, const doub
 void ck_native_aim(ck_Native *native, int particle, const double *next, const double *field) {
     const double dt = native->dt;
     for (int axis = 0; axis < 3; axis++) {
-        const long at = ck_row_contact_tile(particle) + axis * CK_STRIPE;
+        const long at = ck_tile_of(particle) + axis * CK_STRIPE;
         native->beside->gain[at] = dt * dt * field[axis];
         native->beside->way[at] = dt * (next[axis] - 0.5 * dt * field[axis]);
     }
@@ -180,7 +180,7 @@ static void fly(ck_Native *native, int particle, bool may_meet) {
     const double dt = native->dt;
     double way[3], gain[3], next[3], field[3];
     for (int axis = 0; axis < 3; axis++) {
-        const long at = ck_row_contact_tile(particle) + axis * CK_STRIPE;
+        const long at = ck_tile_of(particle) + axis * CK_STRIPE;
         gain[axis] = native->beside->gain[at];
         way[axis] = native->beside->way[at] + 0.5 * gain[axis];
     }

@@ -40,6 +40,24 @@ CK_INLINE bool ck_near_is_kept(const ck_NearPart *part, int found, const uint8_t
     return !differ;
 }
 
+#ifndef CK_SINGLE
+// From a tile's place, or to it, to where the coordinates of loose ones stand so far apart. Read first, as stores might
+// be to where the rest is.
+CK_INLINE void ck_tile_take(double *to, long stride, const double *tile) {
+    const double x = tile[0], y = tile[CK_STRIPE], z = tile[2 * CK_STRIPE];
+    to[0] = x;
+    to[stride] = y;
+    to[2 * stride] = z;
+}
+
+CK_INLINE void ck_tile_put(double *tile, const double *from, long stride) {
+    const double x = from[0], y = from[stride], z = from[2 * stride];
+    tile[0] = x;
+    tile[CK_STRIPE] = y;
+    tile[2 * CK_STRIPE] = z;
+}
+#endif
+
 // The first member of every layout's own structure.
 struct ck_Explicit {
     const ck_ExplicitKind *kind;

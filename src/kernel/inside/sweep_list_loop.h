@@ -5,6 +5,14 @@
 #include "spring_list.h"
 #include "sweep_list.h"
 
+// Springs that are worked on together.
+#define CK_PACK 16
+
+// The ends of a pack's springs. Where there are fewer, both ends are the spare particle.
+typedef struct ck_Pack {
+    uint32_t a[CK_PACK], b[CK_PACK]; // particles, times CK_POINT_BYTES
+} ck_Pack;
+
 // Of each spring: 1/kg of its ends; m; of springs relaxation/((1 + γ̃)·W + α̃), kg, of bars relaxation/(2·L²·W); α̃;
 // γ̃; 1 where it hangs slack when it is short. 0 where there is none: that moves nothing.
 typedef enum ck_SweepValue {
