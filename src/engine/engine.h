@@ -24,6 +24,7 @@ typedef enum ck_Method {
     CK_METHOD_VELOCITY_VERLET,   // explicit, second order
     CK_METHOD_STOERMER_BARS,     // Störmer–Verlet with position constraints, second order in the field
     CK_METHOD_STOERMER_DIRECT,   // the same, all constraints solved at once
+    CK_METHOD_STOERMER_LINES,    // the same with compliant constraints, line by line
     CK_METHOD_XPBD,              // symplectic Euler prediction, compliant position constraints
     CK_METHOD_BULLET_PBD,        // symplectic Euler prediction, Bullet's link projection
     CK_METHOD_IMPLICIT_EULER,    // backward Euler, Newton

@@ -35,7 +35,9 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
 }
 
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
-    const ck_ProjectionKind *kind = setup->loops->is_single ? &ck_projection_rows_single : &ck_projection_rows;
+    const ck_ProjectionKind *kind = setup->rule->projection == CK_PROJECT_LINES ? &ck_projection_lines
+                                    : setup->loops->is_single                 ? &ck_projection_rows_single
+                                                                              : &ck_projection_rows;
     ck_Status status = kind->create(cloth, setup, error);
     if (status || !setup->beside || !is_double(*cloth)) return status;
     status = touch(*cloth, setup, error);

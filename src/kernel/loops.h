@@ -11,6 +11,7 @@
 
 struct ck_ExplicitCloth;
 struct ck_ExplicitList;
+struct ck_LinedCloth;
 struct ck_ProjectedCloth;
 struct ck_RowContact;
 struct ck_SweepList;
@@ -88,6 +89,8 @@ typedef bool ck_RowPress(const struct ck_RowContact *contact, int row); // true 
 // Beside a list: a bit for each of a row of eight that may meet a surface on its way, from x at a speed way/dt under a
 // field gain/dt²; the others do not.
 typedef unsigned ck_RowMeets(const struct ck_RowContact *contact, int row);
+// A substep of lines; see line_loop.h.
+typedef void ck_LineSubstep(const struct ck_LinedCloth *cloth, bool is_last);
 // A sweep over packs of springs; see sweep_list_loop.h.
 typedef void ck_SweepPacks(const struct ck_SweepList *list, bool is_turned);
 // Products with a sum each, as many as it can a second; returns how many there were.
@@ -109,6 +112,7 @@ typedef struct ck_Loops {
     ck_RowFly *row_fly;
     ck_RowPress *row_press;
     ck_RowMeets *row_meets;
+    ck_LineSubstep *line_substep;
     ck_SweepPacks *sweep_packs;
     ck_Peak *peak;
 } ck_Loops;

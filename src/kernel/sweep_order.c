@@ -6,6 +6,7 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct Visit {
     long when;
@@ -89,11 +90,54 @@ bool ck_sweep_has_colours(const ck_Model *model, ck_Projection projection) {
            model->particle_count <= CK_MOST_LISTED && !ck_projection_fits(model, &springs);
 }
 
+// The springs of a kind of lines that begin at each particle, by what leads to the next one.
+typedef struct LineStarts {
+    int *along, *down, *down_right, *down_left; // [n] springs, or -1
+} LineStarts;
+
+static int *starts_of(const LineStarts *starts, const ck_Spring *spring, int columns) {
+    const int apart = spring->b - spring->a;
+    if (spring->kind == CK_SHEAR) return apart == columns + 1 ? starts->down_right : starts->down_left;
+    return apart == columns ? starts->down : starts->along;
+}
+
+// Appends the lines of a kind, each from its first particle on; returns how many springs there are by then.
+static int append_lines(const ck_Model *model, const int *starts, bool *follows, int *order, int count) {
+    const int particles = model->particle_count;
+    memset(follows, 0, (size_t)particles * sizeof *follows);
+    for (int i = 0; i < particles; i++)
+        if (starts[i] >= 0) follows[model->springs[starts[i]].b] = true;
+    for (int first = 0; first < particles; first++)
+        for (int at = first; !follows[first] && starts[at] >= 0; at = model->springs[order[count++]].b)
+            order[count] = starts[at];
+    return count;
+}
+
+// Of a regular cloth: along rows, down right, down left, down.
+static ck_Status order_lines(const ck_Model *model, int *order) {
+    const size_t particles = (size_t)model->particle_count;
+    int *starts = malloc(sizeof *starts * 4 * particles), count = 0;
+    bool *follows = malloc(sizeof *follows * particles);
+    if (starts && follows) {
+        const LineStarts lines = {starts, starts + particles, starts + 2 * particles, starts + 3 * particles};
+        int *const kinds[] = {lines.along, lines.down_right, lines.down_left, lines.down};
+        for (size_t i = 0; i < 4 * particles; i++) starts[i] = -1;
+        for (int i = 0; i < model->spring_count; i++)
+            starts_of(&lines, &model->springs[i], model->columns)[model->springs[i].a] = i;
+        for (int kind = 0; kind < 4; kind++) count = append_lines(model, kinds[kind], follows, order, count);
+    }
+    const bool has_memory = starts && follows;
+    free(starts);
+    free(follows);
+    return has_memory ? CK_OK : CK_NO_MEMORY;
+}
+
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order) {
     ck_RowSprings springs;
     for (int i = 0; i < model->spring_count; i++) order[i] = i;
     if (!ck_projection_fits(model, &springs))
         return ck_sweep_has_colours(model, projection) ? order_mesh(model, order) : CK_OK;
+    if (projection == CK_PROJECT_LINES) return order_lines(model, order);
     const Way way = {ck_rows_of(model), projection, sweeps == 1 || projection == CK_PROJECT_SPRINGS};
     Visit *visits = malloc(sizeof *visits * (size_t)model->spring_count);
     if (!visits) return CK_NO_MEMORY;

@@ -11,11 +11,13 @@ extern "C" {
 
 typedef enum ck_Projection {
     CK_PROJECT_BARS, // Δx along the direction at the start of the substep, to first order (SHAKE)
-    CK_PROJECT_SPRINGS // Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃) along the direction now (XPBD)
+    CK_PROJECT_SPRINGS, // Δλ = (−C − α̃·λ − γ̃·∇C·(x − x_start))/((1 + γ̃)·W + α̃) along the direction now (XPBD)
+    CK_PROJECT_LINES // the same Δλ of all springs of a line together
 } ck_Projection;
 
 // The springs of a model in the order in which a native sweep, of so many a substep, corrects them, [spring_count]:
-// that of constraint_kernel.h where it takes the model, else the model's, but for those in colours. Errors:
+// that of constraint_kernel.h where it takes the model, else the model's, but for those in colours. Of lines, which are
+// asked for where it takes the model alone, line by line from their first springs on. Errors:
 // CK_NO_MEMORY.
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order);
 

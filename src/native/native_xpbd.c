@@ -1,5 +1,5 @@
 // Extended position-based dynamics: compliant constraints, one iteration per small substep.
-#include "engine.h"
+#include "compliance.h"
 #include "hinges.h"
 #include "projection.h"
 #include "time_scale.h"
@@ -139,11 +139,6 @@ static double time_step_limit(const ck_Model *model, uint32_t iterations) {
     return limit;
 }
 
-// m/N
-static double compliance_of(const ck_Spring *spring, const ck_Settings *used) {
-    return used->softness > 0 ? used->softness : 1 / spring->stiffness;
-}
-
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps,
                           .iterations = wanted->iterations             ? wanted->iterations
@@ -154,31 +149,18 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
                           .threads = wanted->threads};
     ck_settings_take_own(used, wanted);
     if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model, used->iterations));
-    double dt = model->step / used->substeps;
     ck_own_ledger(ledger, model, used, "v/(1 + drag*dt) after the sweeps", CK_APPROXIMATE);
-    for (int kind = 0; kind < CK_SPRING_KINDS; kind++) {
-        const ck_Spring *spring = ck_model_spring_of_kind(model, kind);
-        if (!spring) continue;
-        ck_ledger_add(ledger,
-                      (ck_LedgerRow){ck_stiffness_names[kind], spring->stiffness, "N/m", "compliance",
-                                     compliance_of(spring, used) / (dt * dt),
-                                     used->softness > 0 ? "as set, over dt^2"
-                                                        : "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations",
-                                     CK_APPROXIMATE});
-    }
+    ck_compliance_ledger(ledger, model, used, "1/(k*dt^2); 1/k_eff = 1/k + w*(dt^2 + c*dt/k)/iterations");
     ck_ledger_add_wind(ledger, model, "acceleration", "by face, before the sweeps", CK_APPROXIMATE);
     ck_ledger_add_bending(ledger, model, "compliance", "1/(s*dt^2) of each hinge's vector", CK_APPROXIMATE);
-    if (model->terms & CK_TERM_DAMPING)
-        ck_ledger_add(ledger, (ck_LedgerRow){"spring damping", model->springs[0].damping, "N*s/m", "gamma",
-                                             model->springs[0].damping * compliance_of(&model->springs[0], used) / dt,
-                                             "c*compliance/dt", CK_APPROXIMATE});
+    ck_compliance_ledger_damping(ledger, model, used);
 }
 
 // α̃ and γ̃ of every spring, by the substep.
 static void soften(ck_Native *native) {
     for (int i = 0; i < native->model->spring_count; i++) {
         const ck_Spring *spring = &native->model->springs[i];
-        const double compliance = compliance_of(spring, &native->used);
+        const double compliance = ck_compliance_of(spring, &native->used);
         native->compliance[i] = compliance / (native->dt * native->dt);
         native->gamma[i] = spring->damping * compliance / native->dt;
     }

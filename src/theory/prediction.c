@@ -262,6 +262,7 @@ static const Theory theories[] = {
     {CK_METHOD_VELOCITY_VERLET, "free_fall", fall_exactly},
     {CK_METHOD_STOERMER_BARS, "free_fall", fall_exactly},
     {CK_METHOD_STOERMER_DIRECT, "free_fall", fall_exactly},
+    {CK_METHOD_STOERMER_LINES, "free_fall", fall_exactly},
     {CK_METHOD_XPBD, "free_fall", fall_ahead},
     {CK_METHOD_BULLET_PBD, "free_fall", fall_ahead},
     {CK_METHOD_IMPLICIT_EULER, "free_fall", fall_ahead},
@@ -270,6 +271,7 @@ static const Theory theories[] = {
     {CK_METHOD_VELOCITY_VERLET, "terminal_speed", drag_verlet},
     {CK_METHOD_STOERMER_BARS, "terminal_speed", drag_leapfrog},
     {CK_METHOD_STOERMER_DIRECT, "terminal_speed", drag_leapfrog},
+    {CK_METHOD_STOERMER_LINES, "terminal_speed", drag_leapfrog},
     {CK_METHOD_XPBD, "terminal_speed", drag_then_damp},
     {CK_METHOD_BULLET_PBD, "terminal_speed", drag_then_damp},
     {CK_METHOD_IMPLICIT_EULER, "terminal_speed", drag_damp_first},
@@ -293,8 +295,7 @@ static bool rest_on_network(const ck_Model *model, const ck_Engine *engine, cons
                             const ck_Truth *truth, double *position) {
     ck_Method method = engine->method;
     const double *at_rest = ck_trajectory_position(&truth->reference.trajectory, 0);
-    if (method == CK_METHOD_XPBD || method == CK_METHOD_STOERMER_BARS || method == CK_METHOD_BULLET_PBD)
-        return ck_prediction_rest(model, engine, used, at_rest, position);
+    if (ck_prediction_sweeps(method)) return ck_prediction_rest(model, engine, used, at_rest, position);
     if (!balances_forces(model, method, used)) return false;
     memcpy(position, at_rest, 3 * sizeof(double) * (size_t)model->particle_count);
     return true;

@@ -388,9 +388,9 @@ static bool hangs_bodies(const ck_Model *model) {
     return hangs;
 }
 
-// Who refuses a shipped scene whose terms it has: native-rope what is no rope of bars, native-narrow what is not
-// stepped in vectors, Bullet what hangs bodies on springs, and nobody else; or a test that skips what is refused would
-// pass by running nothing.
+// Who refuses a shipped scene whose terms it has: native-rope what is no rope of bars, native-lines what is no regular
+// cloth, native-narrow what is not stepped in vectors, Bullet what hangs bodies on springs, and nobody else; or a test
+// that skips what is refused would pass by running nothing.
 static void test_who_refuses(void **state) {
     (void)state;
     glob_t found;
@@ -405,7 +405,7 @@ static void test_who_refuses(void **state) {
             if (!fixture_supports(ck_engine_at(i), &fixture.model)) continue;
             if (fixture_takes(ck_engine_at(i), &fixture.model))
                 taken++;
-            else if (strcmp(name, "native-rope") && strcmp(name, "native-narrow") &&
+            else if (strcmp(name, "native-rope") && strcmp(name, "native-lines") && strcmp(name, "native-narrow") &&
                      !(!strncmp(name, "bullet", 6) && hangs_bodies(&fixture.model)) &&
                      (strcmp(name, "mujoco") || fixture.model.spring_count < 10000) &&
                      (strcmp(name, "ode-direct") || fixture.model.spring_count < 1000))

@@ -1,4 +1,4 @@
-// What either precision does: one row of functions each.
+// What rows in either precision do, and lines: one row of functions each.
 #ifndef CK_CONSTRAINT_KIND_H
 #define CK_CONSTRAINT_KIND_H
 
@@ -13,6 +13,7 @@ typedef struct ck_ProjectionKind {
 
 extern const ck_ProjectionKind ck_projection_rows;
 #ifndef CK_SINGLE
+extern const ck_ProjectionKind ck_projection_lines;
 extern const ck_ProjectionKind ck_projection_rows_single;
 #endif
 

@@ -100,6 +100,12 @@ ck_Status ck_bench_front_build(ck_BenchFront *front, const ck_BenchBody *body, d
     return CK_OK;
 }
 
+// 2, 3, 4, 6, 8, 12 …
+static uint32_t next_substeps(uint32_t substeps) {
+    bool is_power = (substeps & (substeps - 1)) == 0;
+    return is_power ? substeps / 2 * 3 : substeps / 3 * 4;
+}
+
 static void take(ck_BenchCost *costs, const ck_Settings *settings, double error, double seconds) {
     for (int i = 0; i < CK_BENCH_TARGETS; i++)
         if (error <= ck_bench_targets[i] && !(costs[i].seconds <= seconds))
@@ -114,11 +120,11 @@ void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, 
     if (ck_engine_lacks(engine, &front->model)) snprintf(reason, 200, "does not model it");
     for (size_t k = 0; k < (sweeps_over ? sizeof sweeps / sizeof *sweeps : 1) && !*reason; k++) {
         double seconds = 0;
-        for (uint32_t substeps = 2; substeps <= MOST_SUBSTEPS && !*reason; substeps *= 2) {
+        for (uint32_t substeps = 2; substeps <= MOST_SUBSTEPS && !*reason; substeps = next_substeps(substeps)) {
             const ck_Settings wanted = {.substeps = substeps, .iterations = sweeps_over ? sweeps[k] : 0};
             const double most = fmin(budget, costs[CK_BENCH_TARGETS - 1].seconds * FRAMES * FRAME);
-            // twice the steps take twice as long, or nearly
-            if (1.8 * seconds * FRAMES * FRAME > most) break;
+            // more steps take longer by as much, or nearly
+            if (1.2 * seconds * FRAMES * FRAME > most) break;
             const double error = ck_bench_front_run(front, engine, &wanted, budget, &seconds, reason);
             take(costs, &wanted, error, seconds);
         }

@@ -20,6 +20,7 @@ typedef struct Substep {
     const ck_Settings *used;
     const ck_Spring **order; // [springs] as the sweep comes to them
     double dt, eased;        // s; what drag leaves of the field's push
+    double *line;            // [5*springs] what solving lines needs
     double *tension;         // [springs] N, in that order: what all sweeps have corrected by, / dt²
 } Substep;
 
@@ -59,9 +60,76 @@ static double correct(const Substep *step, const ck_Spring *spring, const double
     return -share / h / weight * length * (squared - rest * rest) / (squared + rest * rest);
 }
 
+// Where the line ends that begins with a spring: the next one's upper end is no longer the last one's lower one, or it
+// leads elsewhere.
+static int end_of_line(const Substep *step, int first) {
+    const ck_Spring *spring = step->order[first];
+    const int apart = spring->b - spring->a;
+    int end = first + 1;
+    while (end < step->model->spring_count && step->order[end]->a == step->order[end - 1]->b &&
+           step->order[end]->b - step->order[end]->a == apart && step->order[end]->kind == spring->kind)
+        end++;
+    return end;
+}
+
+// The springs of a line together, by elimination down it, and back: the particle between two couples them.
+static void solve_line(const Substep *step, const double *before, double *now, int first, int end) {
+    const int count = end - first;
+    double *normals = step->line, *moves = normals + 3 * count, *shares = moves + count, inverse = 0, residual = 0;
+    for (int i = 0; i < count; i++) {
+        const ck_Spring *spring = step->order[first + i];
+        double *normal = normals + 3 * i, way[3], started[3];
+        ck_subtract(way, now + 3 * spring->b, now + 3 * spring->a);
+        ck_subtract(started, before + 3 * spring->b, before + 3 * spring->a);
+        const double length = ck_length(way), weight = ck_model_inverse_mass(step->model, spring->a),
+                     both = weight + ck_model_inverse_mass(step->model, spring->b),
+                     softness = step->used->softness > 0 ? step->used->softness : 1 / spring->stiffness,
+                     gamma = spring->damping * softness / step->dt, compliance = softness / (step->dt * step->dt);
+        for (int axis = 0; axis < 3; axis++) normal[axis] = way[axis] / length;
+        const double coupling = i ? -weight * ck_dot(normal, normal - 3) : 0;
+        shares[i] = coupling * inverse;
+        inverse = 1 / (both + compliance / (1 + gamma) - shares[i] * coupling);
+        residual = -(length - spring->rest - compliance * step->tension[first + i] +
+                     gamma * (length - ck_dot(started, normal))) /
+                       (1 + gamma) -
+                   shares[i] * residual;
+        moves[i] = residual * inverse;
+    }
+    for (int i = count - 1; i >= 0; i--) {
+        const ck_Spring *spring = step->order[first + i];
+        if (i + 1 < count) moves[i] -= shares[i + 1] * moves[i + 1];
+        step->tension[first + i] -= moves[i];
+        ck_add_scaled(now + 3 * spring->a, -ck_model_inverse_mass(step->model, spring->a) * moves[i], normals + 3 * i);
+        ck_add_scaled(now + 3 * spring->b, ck_model_inverse_mass(step->model, spring->b) * moves[i], normals + 3 * i);
+    }
+}
+
+static void sweep_lines(const Substep *step, const double *before, double *now) {
+    for (int first = 0, end; first < step->model->spring_count; first = end) {
+        end = end_of_line(step, first);
+        solve_line(step, before, now, first, end);
+    }
+}
+
 static bool is_turned(const Substep *step, uint32_t sweep) {
     return step->method == CK_METHOD_STOERMER_BARS &&
            ck_sweep_is_turned(CK_PROJECT_BARS, sweep, step->used->iterations);
+}
+
+static void sweep_springs(const Substep *step, uint32_t sweep, const double *before, double *now) {
+    const ck_Model *model = step->model;
+    for (int k = 0; k < model->spring_count; k++) {
+        const int i = is_turned(step, sweep) ? model->spring_count - 1 - k : k;
+        const ck_Spring *spring = step->order[i];
+        double weight_a = ck_model_inverse_mass(model, spring->a), weight_b = ck_model_inverse_mass(model, spring->b),
+               along[3];
+        if (weight_a + weight_b == 0) continue;
+        double lambda = -step->tension[i];
+        double change = correct(step, spring, before, now, lambda, weight_a + weight_b, along);
+        step->tension[i] -= change;
+        ck_add_scaled(now + 3 * spring->a, -weight_a * change, along);
+        ck_add_scaled(now + 3 * spring->b, weight_b * change, along);
+    }
 }
 
 // after  [3*n] out, m. The tensions of the sweeps are left in step->tension.
@@ -75,18 +143,10 @@ static void take(const Substep *step, const double *position, double *after) {
     }
     memset(step->tension, 0, sizeof(double) * (size_t)model->spring_count);
     for (uint32_t sweep = 0; sweep < step->used->iterations; sweep++)
-        for (int k = 0; k < model->spring_count; k++) {
-            const int i = is_turned(step, sweep) ? model->spring_count - 1 - k : k;
-            const ck_Spring *spring = step->order[i];
-            double weight_a = ck_model_inverse_mass(model, spring->a),
-                   weight_b = ck_model_inverse_mass(model, spring->b), along[3];
-            if (weight_a + weight_b == 0) continue;
-            double lambda = -step->tension[i];
-            double change = correct(step, spring, position, after, lambda, weight_a + weight_b, along);
-            step->tension[i] -= change;
-            ck_add_scaled(after + 3 * spring->a, -weight_a * change, along);
-            ck_add_scaled(after + 3 * spring->b, weight_b * change, along);
-        }
+        if (step->method == CK_METHOD_STOERMER_LINES)
+            sweep_lines(step, position, after);
+        else
+            sweep_springs(step, sweep, position, after);
     for (int i = 0; i < model->spring_count; i++) step->tension[i] /= step->dt * step->dt;
 }
 
@@ -114,8 +174,9 @@ static void soften(ck_Spring *springs, const Substep *step, const double *positi
     }
 }
 
-static bool sweeps(ck_Method method) {
-    return method == CK_METHOD_XPBD || method == CK_METHOD_STOERMER_BARS || method == CK_METHOD_BULLET_PBD;
+bool ck_prediction_sweeps(ck_Method method) {
+    return method == CK_METHOD_XPBD || method == CK_METHOD_STOERMER_BARS || method == CK_METHOD_BULLET_PBD ||
+           method == CK_METHOD_STOERMER_LINES;
 }
 
 // NULL without memory.
@@ -129,7 +190,10 @@ static const ck_Spring **springs_in_order(const ck_Model *model, const ck_Engine
     if (found && method == CK_METHOD_BULLET_PBD && !(reordered && ck_settings_get(used, reordered->slot) > 0))
         for (size_t i = 0; i < count; i++) order[i] = (int)i;
     else if (found)
-        found = !ck_sweep_order(model, method == CK_METHOD_STOERMER_BARS ? CK_PROJECT_BARS : CK_PROJECT_SPRINGS,
+        found = !ck_sweep_order(model,
+                                method == CK_METHOD_STOERMER_BARS    ? CK_PROJECT_BARS
+                                : method == CK_METHOD_STOERMER_LINES ? CK_PROJECT_LINES
+                                                                     : CK_PROJECT_SPRINGS,
                                 method == CK_METHOD_BULLET_PBD ? 1 : used->iterations, order);
     for (size_t i = 0; i < count && found; i++) springs[i] = &model->springs[order[i]];
     free(order);
@@ -245,17 +309,20 @@ bool ck_prediction_rest(const ck_Model *model, const ck_Engine *engine, const ck
                         double *position) {
     const unsigned foreign = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     ck_Method method = engine->method;
-    if (!sweeps(method) || !model->spring_count || !used->iterations || (model->terms & foreign)) return false;
+    if (!ck_prediction_sweeps(method) || !model->spring_count || !used->iterations || (model->terms & foreign)) return false;
     size_t vector = 3 * (size_t)model->particle_count, count = (size_t)model->spring_count;
     ck_Settings settings = *used;
     if (!(settings.relaxation > 0)) settings.relaxation = 1;
     Substep step = {.model = model, .method = method, .used = &settings, .dt = model->step / used->substeps};
-    step.eased = method == CK_METHOD_STOERMER_BARS ? 1 / (1 + 0.5 * model->drag * step.dt) : 1;
+    step.eased = method == CK_METHOD_STOERMER_BARS || method == CK_METHOD_STOERMER_LINES
+                     ? 1 / (1 + 0.5 * model->drag * step.dt)
+                     : 1;
     step.order = springs_in_order(model, engine, used);
     step.tension = malloc(sizeof(double) * count);
+    step.line = malloc(sizeof(double) * 5 * count);
     ck_Spring *springs = malloc(sizeof *springs * count);
     double *scratch = malloc((5 + 2 * DEPTH) * vector * sizeof *scratch);
-    bool found = step.order && step.tension && springs && scratch;
+    bool found = step.order && step.tension && step.line && springs && scratch;
     if (found) {
         memcpy(position, truth, vector * sizeof *position);
         Mixer mixer = {.size = (int)vector,
@@ -267,6 +334,7 @@ bool ck_prediction_rest(const ck_Model *model, const ck_Engine *engine, const ck
     }
     free(step.order);
     free(step.tension);
+    free(step.line);
     free(springs);
     free(scratch);
     return found;

@@ -5,6 +5,9 @@
 #include "engine.h"
 #include "model.h"
 
+// True of methods that come to rest where their sweeps leave them, and not where forces balance.
+bool ck_prediction_sweeps(ck_Method method);
+
 // A substep from rest moves each particle by dt²·a and sweeps over the springs so many times; that it ends where it
 // began is solved for, from the true rest, with the stiffness of the softened network for Newton's slopes.
 //   truth     [3*n] in, m: the equilibrium

@@ -1,0 +1,52 @@
+// What the loop of line_kernel.c works on.
+#ifndef CK_LINE_LOOP_H
+#define CK_LINE_LOOP_H
+
+#include "constraint_kind.h"
+
+// Columns of nothing at either side of a cloth: diagonals that begin or end beside it are read there.
+#define CK_MARGIN 8
+
+// What a line's springs have in common: α̃/(1 + γ̃), 1/kg; α̃; γ̃; 1/(1 + γ̃); m.
+typedef struct ck_LineSprings {
+    double softness, compliance, gamma, share, rest;
+} ck_LineSprings;
+
+// Lines go along rows, or down, or by a column aside in each row.
+typedef enum ck_LineKind {
+    CK_LINES_ALONG,
+    CK_LINES_DOWN,
+    CK_LINES_DOWN_RIGHT,
+    CK_LINES_DOWN_LEFT,
+    CK_LINE_KINDS
+} ck_LineKind;
+
+// Particles row by row, each coordinate in a plane of its own. The first member is the kind of projection.
+struct ck_LinedCloth {
+    const ck_ProjectionKind *kind;
+    const ck_Loops *loops;
+    ck_ProjectionRule rule;
+    double carried, push[3]; // as in constraint_loop.h
+    int terms, rows, columns;
+    long stride, plane;                    // doubles from a row to the next, and from a coordinate to the next
+    double *x, *start;                     // planes, m, from the first particle on; start: before the last substep
+    double *before;                        // planes: m moved in the substep before the last one
+    double *weight;                        // 1/kg; 0 where pinned, and beside
+    double *there;                         // [columns] 1, and 0 beside
+    double *turned_weight;                 // weight, column by column
+    long turned_stride;                    // doubles from a column to the next
+    double *multiplier[CK_LINE_KINDS];     // kg·m, at a spring's first end, as weight or as turned; see terms
+    long multipliers;                      // doubles of each
+    ck_LineSprings springs[CK_LINE_KINDS]; // rest 0: there are none
+    double *tiles, *start_tiles;           // [padded columns*3*CK_STRIPE] of the rows at work
+    double *scratch;                       // [rows or columns*CK_LINE_SCRATCH]
+    double *state;
+};
+
+// Doubles a spring: its direction, what it would be moved by alone, and its share in what the spring before is.
+#define CK_LINE_SCRATCH (5 * CK_STRIPE)
+
+// What a cloth does not have is not in its loop.
+enum { CK_LINE_DAMPED = 1, CK_LINE_REPEATED = 2 };
+
+#endif

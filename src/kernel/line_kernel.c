@@ -1,0 +1,142 @@
+// Compliant springs of a regular cloth, whole lines at a time; see constraint_kernel.h.
+#include "line_loop.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Of 1/kg, what elimination along a line leaves of its pivots.
+#define ROUNDING 1e-12
+
+static struct ck_LinedCloth *of(const ck_ProjectedCloth *cloth) {
+    return (struct ck_LinedCloth *)cloth;
+}
+
+static long padded(long count) {
+    return (count + CK_STRIPE - 1) / CK_STRIPE * CK_STRIPE;
+}
+
+static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
+    struct ck_LinedCloth *lined = of(cloth);
+    (void)waves; // lines of a kind are too few for several threads
+    for (uint32_t i = 0; i < substeps; i++) lined->loops->line_substep(lined, i + 1 == substeps);
+}
+
+static long place_of(const struct ck_LinedCloth *lined, int particle) {
+    return particle / lined->columns * lined->stride + particle % lined->columns;
+}
+
+static void read_state(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
+    const struct ck_LinedCloth *lined = of(cloth);
+    const double rate = lined->rule.keep / lined->rule.dt;
+    for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
+        const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
+        position[i] = lined->x[at];
+        velocity[i] = rate * (lined->x[at] - lined->start[at]);
+        before[i] = rate * lined->before[at];
+    }
+}
+
+static void destroy(ck_ProjectedCloth *cloth) {
+    free(of(cloth)->state);
+    free(cloth);
+}
+
+static double *take(double **next, long size) {
+    double *taken = *next + CK_MARGIN;
+    *next += size + CK_MARGIN;
+    return taken;
+}
+
+// Rows in whole squares, as they are turned; the last one's margin is the next one's, and the array's end its.
+static void measure(struct ck_LinedCloth *lined) {
+    const long rows = padded(lined->rows), columns = padded(lined->columns);
+    lined->stride = columns + CK_MARGIN;
+    lined->plane = rows * lined->stride;
+    lined->turned_stride = rows;
+    lined->multipliers = lined->plane > columns * rows ? lined->plane : columns * rows;
+}
+
+static bool allocate(struct ck_LinedCloth *lined) {
+    const long columns = padded(lined->columns), tiles = 3 * CK_STRIPE * columns,
+               longest = lined->rows > lined->columns ? lined->rows : lined->columns,
+               multipliers = lined->terms & CK_LINE_REPEATED ? lined->multipliers : 0;
+    const long arrays = 10 * lined->plane + lined->stride + columns * lined->turned_stride +
+                        CK_LINE_KINDS * multipliers + 2 * tiles + CK_LINE_SCRATCH * longest;
+    const size_t bytes = sizeof(double) * (size_t)(arrays + (10 + CK_LINE_KINDS) * CK_MARGIN);
+    lined->state = aligned_alloc(sizeof(double) * CK_STRIPE, bytes);
+    if (!lined->state) return false;
+    memset(lined->state, 0, bytes);
+    double *next = lined->state;
+    lined->x = take(&next, 3 * lined->plane);
+    lined->start = take(&next, 3 * lined->plane);
+    lined->before = take(&next, 3 * lined->plane);
+    lined->weight = take(&next, lined->plane);
+    lined->there = take(&next, lined->stride);
+    lined->turned_weight = take(&next, columns * lined->turned_stride);
+    lined->tiles = take(&next, tiles);
+    lined->start_tiles = take(&next, tiles);
+    lined->scratch = take(&next, CK_LINE_SCRATCH * longest);
+    for (int kind = 0; kind < CK_LINE_KINDS; kind++) lined->multiplier[kind] = take(&next, multipliers);
+    return true;
+}
+
+// Springs give way by rounding at least, or lines that reach straight from pin to pin would have no solution.
+static ck_LineSprings springs_of(const ck_RowSprings *springs, ck_SpringKind kind, const ck_ProjectionRule *rule,
+                                 double weight) {
+    const double softness = rule->compliance > 0 ? rule->compliance : 1 / springs->stiffness[kind];
+    const double compliance = fmax(softness / (rule->dt * rule->dt), ROUNDING * weight),
+                 gamma = springs->damping * softness / rule->dt;
+    return (ck_LineSprings){compliance / (1 + gamma), compliance, gamma, 1 / (1 + gamma), springs->rest[kind]};
+}
+
+static void set_springs(struct ck_LinedCloth *lined, const ck_RowSprings *springs, double weight) {
+    for (int kind = 0; kind < CK_LINE_KINDS; kind++) {
+        bool is_shear = kind == CK_LINES_DOWN_RIGHT || kind == CK_LINES_DOWN_LEFT;
+        lined->springs[kind] = springs_of(springs, is_shear ? CK_SHEAR : CK_STRUCTURAL, &lined->rule, weight);
+        if (lined->springs[kind].gamma > 0) lined->terms |= CK_LINE_DAMPED;
+    }
+}
+
+// Places as they are, and as velocities say that they were.
+static void start_moving(struct ck_LinedCloth *lined, const ck_ProjectionSetup *setup) {
+    const double rate = lined->rule.keep / lined->rule.dt;
+    for (int i = 0; i < lined->rows * lined->columns; i++) {
+        const long at = place_of(lined, i);
+        lined->weight[at] = setup->inverse_mass[i];
+        lined->turned_weight[i % lined->columns * lined->turned_stride + i / lined->columns] = setup->inverse_mass[i];
+        for (int axis = 0; axis < 3; axis++) {
+            const long one = at + axis * lined->plane;
+            lined->x[one] = setup->position[3 * i + axis];
+            lined->start[one] = lined->x[one] - setup->velocity[3 * i + axis] / rate;
+            lined->before[one] = setup->before[3 * i + axis] / rate;
+        }
+    }
+    for (int column = 0; column < lined->columns; column++) lined->there[column] = 1;
+}
+
+static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup, ck_Error *error) {
+    const ck_Model *model = setup->model;
+    const ck_ProjectionRule *rule = setup->rule;
+    struct ck_LinedCloth *lined = calloc(1, sizeof *lined);
+    if (!lined) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    *lined = (struct ck_LinedCloth){.kind = &ck_projection_lines,
+                                    .loops = setup->loops,
+                                    .rule = *rule,
+                                    .carried = rule->carry * rule->keep,
+                                    .terms = rule->iterations > 1 ? CK_LINE_REPEATED : 0,
+                                    .rows = model->particle_count / model->columns,
+                                    .columns = model->columns};
+    for (int axis = 0; axis < 3; axis++) lined->push[axis] = rule->dt * rule->push[axis];
+    set_springs(lined, setup->springs, 1 / model->mass[0]);
+    measure(lined);
+    if (!allocate(lined)) {
+        destroy((ck_ProjectedCloth *)lined);
+        return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    }
+    start_moving(lined, setup);
+    *out = (ck_ProjectedCloth *)lined;
+    return CK_OK;
+}
+
+const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state};

@@ -1,0 +1,114 @@
+// Compliant springs of regular cloths, of which whole diagonals, rows and columns are solved at once: a line is a
+// tridiagonal system. A pull at one end of it is felt at the other in one sweep, where Gauss-Seidel takes one for each
+// spring between.
+#include "compliance.h"
+#include "constraint_kernel.h"
+#include "leapfrog.h"
+#include "projection.h"
+#include "time_scale.h"
+
+#include <math.h>
+
+// Time step: 0.12 of what waves across the springs allow of a line that bears its share of the whole load, at most
+// 1/240 s, and a quarter of drag's time. Half as long again keeps sheets of 20×20 and of 64×64 that are let go within 1
+// % of their path for half a second, whether their springs have 1e3 or 1e6 N/m (`clothcheck bench`), but `cloth_64`
+// with its soft corners flips there.
+static double time_step_limit(const ck_Model *model) {
+    const int columns = model->columns, rows = model->particle_count / columns;
+    const double lines = rows < columns ? rows : columns;
+    return fmin(fmin(1.0 / 240, 0.12 * sqrt(lines) * ck_stability_transverse_time(model)),
+                ck_stability_drag_time(model, 0.25));
+}
+
+static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
+    *used = (ck_Settings){.substeps = wanted->substeps,
+                          .iterations = wanted->iterations ? wanted->iterations : 1,
+                          .softness = wanted->softness};
+    ck_settings_take_own(used, wanted);
+    if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model));
+    ck_own_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)", CK_EXACT);
+    ck_compliance_ledger(ledger, model, used, "1/(k*dt^2)");
+    ck_compliance_ledger_damping(ledger, model, used);
+}
+
+static ck_Status lay_in_lines(ck_Native *native, ck_Error *error) {
+    const double half = 0.5 * native->model->drag * native->dt;
+    ck_ProjectionRule rule = {CK_PROJECT_LINES,      native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1,
+                              native->used.softness, 1};
+    ck_model_field(native->model, 0, rule.push);
+    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
+    return ck_native_lay_out(native, &rule, error);
+}
+
+static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
+                        ck_Ledger *ledger, ck_Error *error) {
+    ck_RowSprings springs;
+    ck_Native *native;
+    if (!ck_projection_fits(model, &springs))
+        return ck_fail(error, CK_REFUSED,
+                       "lines are solved of regular cloths without bending springs, that nothing but springs, a field "
+                       "and drag move");
+    translate(model, wanted, used, ledger);
+    ck_Status status = ck_leapfrog_create(&native, model, used, error);
+    if (status) return status;
+    return ck_native_hand_out(state, native, lay_in_lines(native, error));
+}
+
+// Without memory for lines, where the pin goes on as it was.
+static void release(void *state, int particle) {
+    ck_leapfrog_release(state, particle);
+    lay_in_lines(state, NULL);
+}
+
+static ck_StepResult step(void *state) {
+    ck_Native *native = state;
+    return native->cloth ? ck_native_step_frame(native, NULL) : CK_STEP_DIVERGED;
+}
+
+static const ck_Setting settings[] = {
+    {.name = "substeps",
+     .slot = CK_SUBSTEPS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "a share of the time of waves across the springs",
+     .help = "steps a frame"},
+    {.name = "iterations",
+     .slot = CK_ITERATIONS,
+     .is_whole = true,
+     .least = 1,
+     .most = 1e6,
+     .unit = "1",
+     .rule = "1",
+     .help = "sweeps over all lines a substep"},
+    {.name = "compliance",
+     .slot = CK_SOFTNESS,
+     .least = 1e-30,
+     .most = 1e6,
+     .unit = "m/N",
+     .rule = "1/k of each spring",
+     .help = "compliance of every spring"},
+    CK_NATIVE_VECTORS_ROW,
+    {0},
+};
+
+const ck_Engine ck_native_lines = {
+    .name = "native-lines",
+    .about = "compliant springs, whole rows, columns and diagonals solved at once",
+    .family = "native",
+    .version = ck_own_version,
+    .method = CK_METHOD_STOERMER_LINES,
+    .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
+             CK_TERM_RELEASE,
+    .settings = settings,
+    .order = 1,
+    .rest_order = 2,
+    .damped_rest_order = 1, // as of native-xpbd
+    .create = create,
+    .step = step,
+    .pace = ck_native_pace,
+    .read = ck_leapfrog_read,
+    .release = release,
+    .destroy = ck_native_destroy,
+};
