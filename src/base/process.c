@@ -180,20 +180,25 @@ static bool has_mark(const char *process, const char *mark) {
     return has;
 }
 
+// Rounds that find nothing until there is nothing: a process that just becomes another program has no environment for a
+// moment.
+#define QUIET_ROUNDS 3
+
 // Ends what programs of a child have left running, whoever its parent is by now, and waits until it is gone. What it
 // starts meanwhile is found in the next round.
 static void end_strays(pid_t child) {
     char mark[40];
     snprintf(mark, sizeof mark, MARK "=%d", (int)child);
-    for (int round = 0, found = 1; round < 200 && found; round++) {
+    for (int round = 0, quiet = 0; round < 200 && quiet < QUIET_ROUNDS; round++) {
         if (round) nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
         DIR *processes = opendir("/proc");
-        found = 0;
+        int found = 0;
         for (struct dirent *entry; processes && (entry = readdir(processes));) {
             if (entry->d_name[0] < '1' || entry->d_name[0] > '9' || !has_mark(entry->d_name, mark)) continue;
             found += !kill((pid_t)atoi(entry->d_name), SIGKILL);
         }
         if (processes) closedir(processes);
+        quiet = found ? 0 : quiet + 1;
     }
 }
 
