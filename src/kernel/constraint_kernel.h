@@ -8,8 +8,9 @@
 // above. Sweeps go down the rows; but of several over bars one half goes from the first and the last row to the middle,
 // the other half the same way back. That is the order of ck_sweep_order and ck_sweep_is_turned.
 // Lines: a sweep solves all springs of a line together, (∇C·M⁻¹·∇Cᵀ + α̃)·Δλ = −C − …, which is tridiagonal: first each
-// diagonal down right, each down left, then each row, each column. So what pulls at a line's end is felt at its other
-// end at once. Source of the rule: Macklin, Müller, Chentanez 2016, eq. 18 and 26; of the elimination: Thomas 1949.
+// row, then each diagonal down right and down left, then each column. So what pulls at a line's end is felt at its
+// other end at once. Source of the rule: Macklin, Müller, Chentanez 2016, eq. 18 and 26; of the elimination: Thomas
+// 1949.
 #ifndef CK_CONSTRAINT_KERNEL_H
 #define CK_CONSTRAINT_KERNEL_H
 
@@ -54,8 +55,8 @@ typedef struct ck_ProjectionSetup {
 } ck_ProjectionSetup;
 
 // In the precision of the loops: in single precision, places are told from an origin that moves with the cloth.
-// Surfaces are copied. Memory: 10 doubles a particle, 8 more where there are surfaces, and one a spring for XPBD with
-// several sweeps. Errors: CK_NO_MEMORY. Free with ck_projection_destroy.
+// Surfaces are copied. Memory: 10 doubles a particle, 8 more where there are surfaces, one more for lines, and one a
+// spring for XPBD and lines with several sweeps. Errors: CK_NO_MEMORY. Free with ck_projection_destroy.
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 

@@ -92,8 +92,8 @@ static ck_LineSprings springs_of(const ck_RowSprings *springs, ck_SpringKind kin
 
 static void set_springs(struct ck_LinedCloth *lined, const ck_RowSprings *springs, double weight) {
     for (int kind = 0; kind < CK_LINE_KINDS; kind++) {
-        bool is_shear = kind == CK_LINES_DOWN_RIGHT || kind == CK_LINES_DOWN_LEFT;
-        lined->springs[kind] = springs_of(springs, is_shear ? CK_SHEAR : CK_STRUCTURAL, &lined->rule, weight);
+        const ck_SpringKind of = kind == CK_LINES_DOWN_RIGHT || kind == CK_LINES_DOWN_LEFT ? CK_SHEAR : CK_STRUCTURAL;
+        if (springs->rest[of] > 0) lined->springs[kind] = springs_of(springs, of, &lined->rule, weight);
         if (lined->springs[kind].gamma > 0) lined->terms |= CK_LINE_DAMPED;
     }
 }

@@ -54,7 +54,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     return ck_native_hand_out(state, native, lay_in_lines(native, error));
 }
 
-// Without memory for lines, where the pin goes on as it was.
+// Without memory for lines the next step fails.
 static void release(void *state, int particle) {
     ck_leapfrog_release(state, particle);
     lay_in_lines(state, NULL);

@@ -281,7 +281,7 @@ CK_INLINE void sweep(const struct ck_LinedCloth *cloth, bool begins, bool is_las
 
 static void forget_multipliers(const struct ck_LinedCloth *cloth) {
     for (int kind = 0; kind < CK_LINE_KINDS; kind++)
-        memset(cloth->multiplier[kind] - CK_MARGIN, 0, sizeof(double) * (size_t)cloth->multipliers);
+        memset(cloth->multiplier[kind] - CK_MARGIN, 0, sizeof(double) * (size_t)(cloth->multipliers + CK_MARGIN));
 }
 
 // A substep: the flight, and its sweeps.
