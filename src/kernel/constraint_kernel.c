@@ -9,7 +9,7 @@ bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs) {
     return !(model->terms & CK_TERM_MOVING_COLLIDERS) && ck_rows_fit(model, springs) && springs->rest[CK_BEND] == 0;
 }
 
-// The first member of either's structure.
+// The first member of each kind's structure.
 static const ck_ProjectionKind *kind_of(const ck_ProjectedCloth *cloth) {
     return *(const ck_ProjectionKind *const *)cloth;
 }
@@ -36,8 +36,8 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
 
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
     const ck_ProjectionKind *kind = setup->rule->projection == CK_PROJECT_LINES ? &ck_projection_lines
-                                    : setup->loops->is_single                 ? &ck_projection_rows_single
-                                                                              : &ck_projection_rows;
+                                    : setup->loops->is_single                   ? &ck_projection_rows_single
+                                                                                : &ck_projection_rows;
     ck_Status status = kind->create(cloth, setup, error);
     if (status || !setup->beside || !is_double(*cloth)) return status;
     status = touch(*cloth, setup, error);

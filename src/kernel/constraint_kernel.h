@@ -7,10 +7,11 @@
 // straight down, down right and down left, of springs those down right and down left, and straight down from the row
 // above. Sweeps go down the rows; but of several over bars one half goes from the first and the last row to the middle,
 // the other half the same way back. That is the order of ck_sweep_order and ck_sweep_is_turned.
-// Lines: a sweep solves all springs of a line together, (∇C·M⁻¹·∇Cᵀ + α̃)·Δλ = −C − …, which is tridiagonal: first each
-// row, then each diagonal down right and down left, then each column. So what pulls at a line's end is felt at its
-// other end at once. Source of the rule: Macklin, Müller, Chentanez 2016, eq. 18 and 26; of the elimination: Thomas
-// 1949.
+//
+// Lines: a sweep solves all springs of a line together, (∇C·M⁻¹·∇Cᵀ + α̃/(1 + γ̃))·Δλ = (−C − α̃·λ − γ̃·∇C·(x −
+// x_start))/(1 + γ̃), which is tridiagonal: first each row, then each diagonal down right and down left, then each
+// column. So what pulls at a line's end is felt at its other end at once. One thread alone does that, sweep by sweep.
+// Source of the rule: Macklin, Müller, Chentanez 2016, eq. 18 and 26; of the elimination: Thomas 1949.
 #ifndef CK_CONSTRAINT_KERNEL_H
 #define CK_CONSTRAINT_KERNEL_H
 
@@ -33,7 +34,7 @@ typedef struct ck_ProjectionRule {
     double carry, push[3]; // 1 and m/s
     double keep;
     double compliance; // m/N of every spring; 0: 1/k of each
-    double relaxation; // times which each correction is made: 1, or up to 2 for fewer sweeps
+    double relaxation; // times which each correction is made: 1, or up to 2 for fewer sweeps; lines know 1 alone
 } ck_ProjectionRule;
 
 typedef struct ck_ProjectedCloth ck_ProjectedCloth;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Of 1/kg, what elimination along a line leaves of its pivots.
+// A softness is at least this share of 1/m, or rounding could make a pivot 0.
 #define ROUNDING 1e-12
 
 static struct ck_LinedCloth *of(const ck_ProjectedCloth *cloth) {
@@ -18,7 +18,7 @@ static long padded(long count) {
 
 static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     struct ck_LinedCloth *lined = of(cloth);
-    (void)waves; // lines of a kind are too few for several threads
+    (void)waves; // one thread alone
     for (uint32_t i = 0; i < substeps; i++) lined->loops->line_substep(lined, i + 1 == substeps);
 }
 
@@ -48,7 +48,7 @@ static double *take(double **next, long size) {
     return taken;
 }
 
-// Rows in whole squares, as they are turned; the last one's margin is the next one's, and the array's end its.
+// Rows and columns in whole squares, as they are turned. The margin right of a row is the one left of the next.
 static void measure(struct ck_LinedCloth *lined) {
     const long rows = padded(lined->rows), columns = padded(lined->columns);
     lined->stride = columns + CK_MARGIN;
@@ -68,9 +68,10 @@ static bool allocate(struct ck_LinedCloth *lined) {
     if (!lined->state) return false;
     memset(lined->state, 0, bytes);
     double *next = lined->state;
+    // first, so that lines that begin beside the cloth begin in the block
+    lined->before = take(&next, 3 * lined->plane);
     lined->x = take(&next, 3 * lined->plane);
     lined->start = take(&next, 3 * lined->plane);
-    lined->before = take(&next, 3 * lined->plane);
     lined->weight = take(&next, lined->plane);
     lined->there = take(&next, lined->stride);
     lined->turned_weight = take(&next, columns * lined->turned_stride);

@@ -16,9 +16,8 @@ typedef enum ck_Projection {
 } ck_Projection;
 
 // The springs of a model in the order in which a native sweep, of so many a substep, corrects them, [spring_count]:
-// that of constraint_kernel.h where it takes the model, else the model's, but for those in colours. Of lines, which are
-// asked for where it takes the model alone, line by line from their first springs on. Errors:
-// CK_NO_MEMORY.
+// that of constraint_kernel.h where it takes the model, else the model's, but for those in colours. Lines, which only
+// such models have, stand one behind the other, each from its first spring on. Errors: CK_NO_MEMORY.
 ck_Status ck_sweep_order(const ck_Model *model, ck_Projection projection, uint32_t sweeps, int *order);
 
 // True where that order goes by colours, of which none has two springs that share a particle, 256 springs at a time:

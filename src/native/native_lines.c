@@ -6,18 +6,47 @@
 #include "leapfrog.h"
 #include "projection.h"
 #include "time_scale.h"
+#include "vector.h"
 
 #include <math.h>
 
-// Time step: 0.12 of what waves across the springs allow of a line that bears its share of the whole load, at most
-// 1/240 s, and a quarter of drag's time. Half as long again keeps sheets of 20×20 and of 64×64 that are let go within 1
-// % of their path for half a second, whether their springs have 1e3 or 1e6 N/m (`clothcheck bench`), but `cloth_64`
-// with its soft corners flips there.
-static double time_step_limit(const ck_Model *model) {
+// N, of the springs from pin to pin along lines of so many particles, so far apart in their numbers; what noise pulls
+// between others is gone at once.
+static double pinned_tension(const ck_Model *model, int first, int apart, int count) {
+    const ck_Spring *spring = ck_model_spring_of_kind(model, CK_STRUCTURAL);
+    double tension = 0;
+    int before = -1;
+    for (int i = 0; i < count; i++) {
+        const int particle = first + i * apart;
+        if (!model->pinned[particle]) continue;
+        if (before >= 0) {
+            const double way =
+                ck_distance(model->position + 3 * (first + before * apart), model->position + 3 * particle);
+            tension = fmax(tension, spring->stiffness * (way / (i - before) - spring->rest));
+        }
+        before = i;
+    }
+    return tension;
+}
+
+// N, of a line: its share of the whole load, or what pins stretch it by.
+static double tension_of(const ck_Model *model) {
     const int columns = model->columns, rows = model->particle_count / columns;
-    const double lines = rows < columns ? rows : columns;
-    return fmin(fmin(1.0 / 240, 0.12 * sqrt(lines) * ck_stability_transverse_time(model)),
-                ck_stability_drag_time(model, 0.25));
+    double tension = ck_stability_swing_load(model) / (rows < columns ? rows : columns);
+    for (int row = 0; row < rows; row++) tension = fmax(tension, pinned_tension(model, row * columns, 1, columns));
+    for (int column = 0; column < columns; column++)
+        tension = fmax(tension, pinned_tension(model, column, columns, rows));
+    return tension;
+}
+
+// Time step: 0.12 of √(m·d/T), what waves across a line under a tension T allow, as it pulls along where its springs
+// lie before they move; at most 1/240 s, and a quarter of drag's time. Half as long again keeps sheets of 20×20 and of
+// 64×64 that are let go within 1 % of their path for half a second, whether their springs have 1e3 or 1e6 N/m
+// (`clothcheck bench`), but `cloth_64` with its soft corners flips there.
+static double time_step_limit(const ck_Model *model) {
+    const double tension = tension_of(model),
+                 across = tension > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * tension)) : INFINITY;
+    return fmin(fmin(1.0 / 240, 0.12 * across), ck_stability_drag_time(model, 0.25));
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
@@ -88,7 +117,8 @@ static const ck_Setting settings[] = {
      .most = 1e6,
      .unit = "m/N",
      .rule = "1/k of each spring",
-     .help = "compliance of every spring"},
+     .help = "compliance of every spring",
+     .leaves_theory = true},
     CK_NATIVE_VECTORS_ROW,
     {0},
 };
@@ -107,7 +137,6 @@ const ck_Engine ck_native_lines = {
     .damped_rest_order = 1, // as of native-xpbd
     .create = create,
     .step = step,
-    .pace = ck_native_pace,
     .read = ck_leapfrog_read,
     .release = release,
     .destroy = ck_native_destroy,

@@ -61,6 +61,8 @@ static const Case cases[] = {
     {"bar_at_rest", "bullet-pbd", {0}, CK_RUN_OK, "position_rms", 0, 1e-7},
     {"bar_at_rest", "ode-quick", {0}, CK_RUN_OK, "position_rms", 0, 1e-7},
     {"bar_at_rest", "native-rope", {0}, CK_RUN_OK, "position_rms", 0, 1e-7},
+    // steps of lines know what pins stretch them by, not the weight alone
+    {"taut_sheet", "native-lines", {0}, CK_RUN_OK, "position_rms", 0, 1e-6},
     // a soft rope that still swings, undamped, may be as long as it likes
     {"soft_rope", "native-verlet", {0}, CK_RUN_UNSETTLED, NULL, 0, 0},
     {"soft_rope", "ode-direct", {0}, CK_RUN_UNSETTLED, NULL, 0, 0},

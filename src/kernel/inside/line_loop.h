@@ -39,11 +39,12 @@ struct ck_LinedCloth {
     long multipliers;                      // doubles of each
     ck_LineSprings springs[CK_LINE_KINDS]; // rest 0: there are none
     double *tiles, *start_tiles;           // [padded columns*3*CK_STRIPE] of the rows at work
-    double *scratch;                       // [rows or columns*CK_LINE_SCRATCH]
+    double *scratch;                       // [the larger of rows and columns*CK_LINE_SCRATCH]
     double *state;
 };
 
-// Doubles a spring: its direction, what it would be moved by alone, and its share in what the spring before is.
+// What elimination leaves of each spring: its direction; its Δλ as long as the one after it moves nothing; and the
+// share that its own Δλ then takes from that of the one before.
 #define CK_LINE_SCRATCH (5 * CK_STRIPE)
 
 // What a cloth does not have is not in its loop.

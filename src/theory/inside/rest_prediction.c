@@ -309,7 +309,8 @@ bool ck_prediction_rest(const ck_Model *model, const ck_Engine *engine, const ck
                         double *position) {
     const unsigned foreign = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     ck_Method method = engine->method;
-    if (!ck_prediction_sweeps(method) || !model->spring_count || !used->iterations || (model->terms & foreign)) return false;
+    if (!ck_prediction_sweeps(method) || !model->spring_count || !used->iterations || (model->terms & foreign))
+        return false;
     size_t vector = 3 * (size_t)model->particle_count, count = (size_t)model->spring_count;
     ck_Settings settings = *used;
     if (!(settings.relaxation > 0)) settings.relaxation = 1;
