@@ -1,5 +1,7 @@
 #include "leapfrog.h"
 
+#include "constraint_kernel.h"
+#include "projection.h"
 #include "vector.h"
 
 #include <string.h>
@@ -73,6 +75,20 @@ ck_Status ck_leapfrog_create(ck_Native **native, const ck_Model *model, const ck
     for (int i = 0; i < model->particle_count && !status; i++)
         if ((*native)->inverse_mass[i] > 0) start_leapfrog(*native, i);
     return status;
+}
+
+ck_Status ck_leapfrog_lay_out(ck_Native *native, ck_Projection projection, ck_Error *error) {
+    const double half = 0.5 * native->model->drag * native->dt;
+    ck_ProjectionRule rule = {.projection = projection,
+                              .dt = native->dt,
+                              .iterations = native->iterations,
+                              .carry = (1 - half) / (1 + half),
+                              .keep = 1,
+                              .compliance = native->used.softness,
+                              .relaxation = native->used.relaxation};
+    ck_model_field(native->model, 0, rule.push);
+    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
+    return ck_native_lay_out(native, &rule, error);
 }
 
 // v(t) = v₋½ + a·dt/2, with the last substep's whole acceleration (v₋½ − v₋₁½)/dt

@@ -54,15 +54,6 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     ck_leapfrog_ledger(ledger, model, used);
 }
 
-static ck_Status lay_in_rows(ck_Native *native, ck_Error *error) {
-    const double half = 0.5 * native->model->drag * native->dt;
-    ck_ProjectionRule rule = {
-        CK_PROJECT_BARS, native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1, 0, native->used.relaxation};
-    ck_model_field(native->model, 0, rule.push);
-    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
-    return ck_native_lay_out(native, &rule, error);
-}
-
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     translate(model, wanted, used, ledger);
@@ -71,13 +62,13 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     ck_Status status = ck_native_check_precision(model, used, ck_projection_fits(model, &springs), error);
     if (!status) status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
-    return ck_native_hand_out(state, native, lay_in_rows(native, error));
+    return ck_native_hand_out(state, native, ck_leapfrog_lay_out(native, CK_PROJECT_BARS, error));
 }
 
 static void release(void *state, int particle) {
     ck_leapfrog_release(state, particle);
     // without memory for rows the list of springs goes on
-    lay_in_rows(state, NULL);
+    ck_leapfrog_lay_out(state, CK_PROJECT_BARS, NULL);
 }
 
 static ck_StepResult step(void *state) {

@@ -60,15 +60,6 @@ static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Setti
     ck_compliance_ledger_damping(ledger, model, used);
 }
 
-static ck_Status lay_in_lines(ck_Native *native, ck_Error *error) {
-    const double half = 0.5 * native->model->drag * native->dt;
-    ck_ProjectionRule rule = {CK_PROJECT_LINES,      native->dt, native->iterations, (1 - half) / (1 + half), {0}, 1,
-                              native->used.softness, 1};
-    ck_model_field(native->model, 0, rule.push);
-    for (int axis = 0; axis < 3; axis++) rule.push[axis] *= native->dt / (1 + half);
-    return ck_native_lay_out(native, &rule, error);
-}
-
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
@@ -80,13 +71,13 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     translate(model, wanted, used, ledger);
     ck_Status status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
-    return ck_native_hand_out(state, native, lay_in_lines(native, error));
+    return ck_native_hand_out(state, native, ck_leapfrog_lay_out(native, CK_PROJECT_LINES, error));
 }
 
 // Without memory for lines the next step fails.
 static void release(void *state, int particle) {
     ck_leapfrog_release(state, particle);
-    lay_in_lines(state, NULL);
+    ck_leapfrog_lay_out(state, CK_PROJECT_LINES, NULL);
 }
 
 static ck_StepResult step(void *state) {

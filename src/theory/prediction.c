@@ -51,9 +51,11 @@ static void fall_verlet(Fall *f) {
     f->v += 0.5 * f->dt * (a + f->a);
 }
 
-// v is half a substep behind x, as the method holds it
+// v is half a substep behind x, as the method holds it, and a how it changed over the last substep
 static void fall_leapfrog(Fall *f) {
+    const double before = f->v;
     f->v = (f->v * (1 - 0.5 * f->drag * f->dt) + f->field * f->dt) / (1 + 0.5 * f->drag * f->dt);
+    f->a = (f->v - before) / f->dt;
     f->x += f->dt * f->v;
 }
 
@@ -82,6 +84,8 @@ static Fall fall_for(const ck_Model *model, const ck_Settings *used, double time
     f.a = field - f.drag * speed;
     if (substep == fall_leapfrog) f.v -= 0.5 * f.dt * f.a;
     for (long step = lround(time / f.dt); step > 0; step--) substep(&f);
+    // told at the time of x, as the engines tell it
+    if (substep == fall_leapfrog) f.v += 0.5 * f.dt * f.a;
     return f;
 }
 

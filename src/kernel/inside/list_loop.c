@@ -5,8 +5,8 @@
 
 enum { DAMPED = CK_LIST_DAMPED, DRAGGED = CK_LIST_DRAGGED, HANGS = CK_LIST_HANGS };
 
-// Springs of each place that go through the root together: one of them waits less than a tenth longer, more do not
-// help.
+// Springs of each place that go through the root together: one by one takes a tenth longer, four are more than
+// registers hold.
 enum { TOGETHER = 2 };
 
 // As many places of a group as there are lanes, and the force on each so far.
