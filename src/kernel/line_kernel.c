@@ -61,9 +61,9 @@ static bool allocate(struct ck_LinedCloth *lined) {
     const long columns = padded(lined->columns), tiles = 3 * CK_STRIPE * columns,
                longest = lined->rows > lined->columns ? lined->rows : lined->columns,
                multipliers = lined->terms & CK_LINE_REPEATED ? lined->multipliers : 0;
-    const long arrays = 10 * lined->plane + lined->stride + columns * lined->turned_stride +
+    const long arrays = 13 * lined->plane + lined->stride + columns * lined->turned_stride +
                         CK_LINE_KINDS * multipliers + 2 * tiles + CK_LINE_SCRATCH * longest;
-    const size_t bytes = sizeof(double) * (size_t)(arrays + (10 + CK_LINE_KINDS) * CK_MARGIN);
+    const size_t bytes = sizeof(double) * (size_t)(arrays + (11 + CK_LINE_KINDS) * CK_MARGIN);
     lined->state = aligned_alloc(sizeof(double) * CK_STRIPE, bytes);
     if (!lined->state) return false;
     memset(lined->state, 0, bytes);
@@ -72,6 +72,7 @@ static bool allocate(struct ck_LinedCloth *lined) {
     lined->before = take(&next, 3 * lined->plane);
     lined->x = take(&next, 3 * lined->plane);
     lined->start = take(&next, 3 * lined->plane);
+    lined->flown = take(&next, 3 * lined->plane);
     lined->weight = take(&next, lined->plane);
     lined->there = take(&next, lined->stride);
     lined->turned_weight = take(&next, columns * lined->turned_stride);
@@ -86,7 +87,7 @@ static bool allocate(struct ck_LinedCloth *lined) {
 static ck_LineSprings springs_of(const ck_RowSprings *springs, ck_SpringKind kind, const ck_ProjectionRule *rule,
                                  double weight) {
     const double softness = rule->compliance > 0 ? rule->compliance : 1 / springs->stiffness[kind];
-    const double compliance = fmax(softness / (rule->dt * rule->dt), ROUNDING * weight),
+    const double compliance = fmax(softness / ((1 - CK_LINES_KEPT) * rule->dt * rule->dt), ROUNDING * weight),
                  gamma = springs->damping * softness / rule->dt;
     return (ck_LineSprings){compliance / (1 + gamma), compliance, gamma, 1 / (1 + gamma), springs->rest[kind]};
 }
@@ -110,6 +111,7 @@ static void start_moving(struct ck_LinedCloth *lined, const ck_ProjectionSetup *
             const long one = at + axis * lined->plane;
             lined->x[one] = setup->position[3 * i + axis];
             lined->start[one] = lined->x[one] - setup->velocity[3 * i + axis] / rate;
+            lined->flown[one] = lined->x[one];
             lined->before[one] = setup->before[3 * i + axis] / rate;
         }
     }

@@ -39,14 +39,14 @@ static double tension_of(const ck_Model *model) {
     return tension;
 }
 
-// Time step: 0.12 of √(m·d/T), what waves across a line under a tension T allow, as it pulls along where its springs
+// Time step: 0.16 of √(m·d/T), what waves across a line under a tension T allow, as it pulls along where its springs
 // lie before they move; at most 1/240 s, and a quarter of drag's time. Half as long again keeps sheets of 20×20 and of
 // 64×64 that are let go within 1 % of their path for half a second, whether their springs have 1e3 or 1e6 N/m
 // (`clothcheck bench`), but `cloth_64` with its soft corners flips there.
 static double time_step_limit(const ck_Model *model) {
     const double tension = tension_of(model),
                  across = tension > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * tension)) : INFINITY;
-    return fmin(fmin(1.0 / 240, 0.12 * across), ck_stability_drag_time(model, 0.25));
+    return fmin(fmin(1.0 / 240, 0.16 * across), ck_stability_drag_time(model, 0.25));
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
@@ -123,7 +123,7 @@ const ck_Engine ck_native_lines = {
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
              CK_TERM_RELEASE,
     .settings = settings,
-    .order = 1,
+    .order = 2,
     .rest_order = 2,
     .damped_rest_order = 1, // as of native-xpbd
     .create = create,

@@ -249,17 +249,21 @@ CK_INLINE void solve_along(const struct ck_LinedCloth *cloth, int row, const int
     turn_back(cloth, cloth->x + first, cloth->tiles);
 }
 
-// x ← x + carried·(x − x_start) + push;  x_start ← x as it was; of a row.
+// x̂ ← x + carried·(x − x_start) + push;  x ← x̂ + KEPT·(x − the last x̂);  x_start ← x as it was; of a row.
 CK_INLINE void predict(const struct ck_LinedCloth *cloth, int row, bool is_last) {
-    const ck_Lanes carried = ck_lanes_all(cloth->carried), none = {0};
+    const ck_Lanes carried = ck_lanes_all(cloth->carried), kept = ck_lanes_all(CK_LINES_KEPT), none = {0};
     for (int axis = 0; axis < 3; axis++) {
         const ck_Lanes gain = ck_lanes_all(cloth->push[axis]);
         const long first = row * cloth->stride, from = axis * cloth->plane + first;
-        double *x = cloth->x + from, *start = cloth->start + from, *before = cloth->before + from;
+        double *x = cloth->x + from, *start = cloth->start + from, *before = cloth->before + from,
+               *flown = cloth->flown + from;
         for (long i = 0; i < cloth->columns; i += CK_LANES) {
             const ck_Lanes there = ck_lanes_load(x + i), moved = there - ck_lanes_load(start + i);
             const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(cloth->weight + first + i));
-            ck_lanes_store(x + i, ck_lanes_choose(is_free, there + ck_lanes_plus(gain, carried, moved), there));
+            const ck_Lanes flies = there + ck_lanes_plus(gain, carried, moved),
+                           pulled = there - ck_lanes_load(flown + i);
+            ck_lanes_store(flown + i, ck_lanes_choose(is_free, flies, there));
+            ck_lanes_store(x + i, ck_lanes_choose(is_free, ck_lanes_plus(flies, kept, pulled), there));
             ck_lanes_store(start + i, there);
             if (is_last) ck_lanes_store(before + i, moved);
         }

@@ -30,6 +30,7 @@ struct ck_LinedCloth {
     int terms, rows, columns;
     long stride, plane;                    // doubles from a row to the next, and from a coordinate to the next
     double *x, *start;                     // planes, m, from the first particle on; start: before the last substep
+    double *flown;                         // planes, m: where the last substep's flight ended
     double *before;                        // planes: m moved in the substep before the last one
     double *weight;                        // 1/kg; 0 where pinned, and beside
     double *there;                         // [columns] 1, and 0 beside

@@ -100,16 +100,32 @@ ck_Status ck_bench_front_build(ck_BenchFront *front, const ck_BenchBody *body, d
     return CK_OK;
 }
 
+static bool is_power(uint32_t number) {
+    return (number & (number - 1)) == 0;
+}
+
 // 2, 3, 4, 6, 8, 12 …
 static uint32_t next_substeps(uint32_t substeps) {
-    bool is_power = (substeps & (substeps - 1)) == 0;
-    return is_power ? substeps / 2 * 3 : substeps / 3 * 4;
+    return is_power(substeps) ? substeps / 2 * 3 : substeps / 3 * 4;
 }
 
 static void take(ck_BenchCost *costs, const ck_Settings *settings, double error, double seconds) {
     for (int i = 0; i < CK_BENCH_TARGETS; i++)
         if (error <= ck_bench_targets[i] && !(costs[i].seconds <= seconds))
             costs[i] = (ck_BenchCost){*settings, seconds};
+}
+
+// Between the cheapest and the number tried before it.
+static void refine(const ck_BenchFront *front, const ck_Engine *engine, double budget, ck_BenchCost *costs,
+                   int target) {
+    char why[200];
+    double seconds;
+    ck_Settings wanted = costs[target].settings;
+    if (isnan(costs[target].seconds)) return;
+    wanted.substeps = is_power(wanted.substeps) ? wanted.substeps / 8 * 7 : wanted.substeps / 6 * 5;
+    if (!wanted.substeps) return;
+    const double error = ck_bench_front_run(front, engine, &wanted, budget, &seconds, why);
+    take(costs, &wanted, error, seconds);
 }
 
 void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, double budget, ck_BenchCost *costs,
@@ -129,5 +145,6 @@ void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, 
             take(costs, &wanted, error, seconds);
         }
     }
+    for (int i = 0; i < CK_BENCH_TARGETS && !*reason; i++) refine(front, engine, budget, costs, i);
     if (!*reason && isnan(costs[0].seconds)) snprintf(reason, 200, "no settings within %g s a run get there", budget);
 }

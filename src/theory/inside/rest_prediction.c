@@ -1,7 +1,7 @@
 #include "rest_prediction.h"
 
+#include "constraint_kernel.h"
 #include "equilibrium.h"
-#include "sweep_order.h"
 #include "time_scale.h"
 #include "vector.h"
 
@@ -20,6 +20,7 @@ typedef struct Substep {
     const ck_Settings *used;
     const ck_Spring **order; // [springs] as the sweep comes to them
     double dt, eased;        // s; what drag leaves of the field's push
+    double found;            // the share of a place's pulls that a substep finds anew: the rest it begins with
     double *line;            // [5*springs] what solving lines needs
     double *tension;         // [springs] N, in that order: what all sweeps have corrected by, / dt²
 } Substep;
@@ -84,7 +85,8 @@ static void solve_line(const Substep *step, const double *before, double *now, i
         const double length = ck_length(way), weight = ck_model_inverse_mass(step->model, spring->a),
                      both = weight + ck_model_inverse_mass(step->model, spring->b),
                      softness = step->used->softness > 0 ? step->used->softness : 1 / spring->stiffness,
-                     gamma = spring->damping * softness / step->dt, compliance = softness / (step->dt * step->dt);
+                     gamma = spring->damping * softness / step->dt,
+                     compliance = softness / (step->found * step->dt * step->dt);
         for (int axis = 0; axis < 3; axis++) normal[axis] = way[axis] / length;
         const double coupling = i ? -weight * ck_dot(normal, normal - 3) : 0;
         shares[i] = coupling * inverse;
@@ -132,14 +134,14 @@ static void sweep_springs(const Substep *step, uint32_t sweep, const double *bef
     }
 }
 
-// after  [3*n] out, m. The tensions of the sweeps are left in step->tension.
+// after  [3*n] out, m. The tensions of the sweeps, and of what it began with, are left in step->tension.
 static void take(const Substep *step, const double *position, double *after) {
     const ck_Model *model = step->model;
     memcpy(after, position, 3 * sizeof(double) * (size_t)model->particle_count);
     for (int i = 0; i < model->particle_count; i++) {
         double field[3];
         ck_model_field(model, i, field);
-        if (!model->pinned[i]) ck_add_scaled(after + 3 * i, step->dt * step->dt * step->eased, field);
+        if (!model->pinned[i]) ck_add_scaled(after + 3 * i, step->found * step->dt * step->dt * step->eased, field);
     }
     memset(step->tension, 0, sizeof(double) * (size_t)model->spring_count);
     for (uint32_t sweep = 0; sweep < step->used->iterations; sweep++)
@@ -147,7 +149,7 @@ static void take(const Substep *step, const double *position, double *after) {
             sweep_lines(step, position, after);
         else
             sweep_springs(step, sweep, position, after);
-    for (int i = 0; i < model->spring_count; i++) step->tension[i] /= step->dt * step->dt;
+    for (int i = 0; i < model->spring_count; i++) step->tension[i] /= step->found * step->dt * step->dt;
 }
 
 // The network that a substep amounts to in the large: n sweeps give each spring 1/k + w·dt²/n, w the mean weight of its
@@ -166,7 +168,7 @@ static void soften(ck_Spring *springs, const Substep *step, const double *positi
         if (step->method == CK_METHOD_STOERMER_BARS) compliance = 0;
         if (step->method == CK_METHOD_BULLET_PBD && step->used->softness > 0)
             compliance = 0, share = step->used->softness;
-        compliance += 0.5 * weight * step->dt * step->dt / share / step->used->iterations;
+        compliance += 0.5 * weight * step->found * step->dt * step->dt / share / step->used->iterations;
         if (step->method == CK_METHOD_XPBD) compliance += 0.5 * weight * step->dt * spring->damping / spring->stiffness;
         springs[i] = *spring;
         springs[i].stiffness = 1 / compliance;
@@ -318,6 +320,7 @@ bool ck_prediction_rest(const ck_Model *model, const ck_Engine *engine, const ck
     step.eased = method == CK_METHOD_STOERMER_BARS || method == CK_METHOD_STOERMER_LINES
                      ? 1 / (1 + 0.5 * model->drag * step.dt)
                      : 1;
+    step.found = method == CK_METHOD_STOERMER_LINES ? 1 - CK_LINES_KEPT : 1;
     step.order = springs_in_order(model, engine, used);
     step.tension = malloc(sizeof(double) * count);
     step.line = malloc(sizeof(double) * 5 * count);
