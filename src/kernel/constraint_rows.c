@@ -1,5 +1,6 @@
 // Compiled for either precision; see single.h.
 #include "constraint_loop.h"
+#include "row_contact.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -156,4 +157,18 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     return CK_OK;
 }
 
-const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run, read_state};
+#ifdef CK_SINGLE
+const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run, read_state, NULL};
+#else
+// What moves starts as without contact.
+static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
+    ck_Status status = ck_row_contact_of_rows(&cloth->contact, setup->beside, &cloth->rows, error);
+    if (status) return status;
+    cloth->contact->x = cloth->x;
+    memcpy(cloth->contact->from, cloth->start, 3 * sizeof *cloth->start * cloth->rows.size);
+    cloth->from = cloth->contact->from;
+    return CK_OK;
+}
+
+const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run, read_state, touch};
+#endif

@@ -1,5 +1,6 @@
 // Compliant springs of a regular cloth, whole lines at a time; see constraint_kernel.h.
 #include "line_loop.h"
+#include "row_contact.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,13 +27,23 @@ static long place_of(const struct ck_LinedCloth *lined, int particle) {
     return particle / lined->columns * lined->stride + particle % lined->columns;
 }
 
+// A particle's number among places in rows of eight.
+static int eights_place(const struct ck_LinedCloth *lined, int particle) {
+    return (int)(particle / lined->columns * ck_line_places(lined)) + particle % lined->columns;
+}
+
+// m: where contact measures a particle's way from.
+static double *from_at(const struct ck_LinedCloth *lined, int particle, int axis) {
+    return lined->contact->from + ck_tile_of(eights_place(lined, particle)) + axis * CK_STRIPE;
+}
+
 static void read_state(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
     const struct ck_LinedCloth *lined = of(cloth);
     const double rate = lined->rule.keep / lined->rule.dt;
     for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
         const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
         position[i] = lined->x[at];
-        velocity[i] = rate * (lined->x[at] - lined->start[at]);
+        velocity[i] = rate * (lined->x[at] - (lined->contact ? *from_at(lined, i / 3, i % 3) : lined->start[at]));
         before[i] = rate * lined->before[at];
     }
 }
@@ -142,4 +153,35 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     return CK_OK;
 }
 
-const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state};
+static int particle_at(const struct ck_LinedCloth *lined, int place) {
+    const int places = (int)ck_line_places(lined);
+    return place / places * lined->columns + place % places;
+}
+
+static bool meet(void *state, int place, const double *field, double *x, double *v, double *impulse) {
+    const struct ck_LinedCloth *lined = state;
+    return lined->follower.meet(lined->follower.state, particle_at(lined, place), field, x, v, impulse);
+}
+
+static void press(void *state, int place, const double *from, double *depth, double *held, double *x, double *impulse) {
+    const struct ck_LinedCloth *lined = state;
+    lined->follower.press(lined->follower.state, particle_at(lined, place), from, depth, held, x, impulse);
+}
+
+// What moves starts as without contact.
+static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
+    struct ck_LinedCloth *lined = of(cloth);
+    const ck_RowContact *beside = setup->beside;
+    const ck_Follower follower = {lined, meet, press};
+    lined->follower = beside->follower;
+    const ck_Status status = ck_row_contact_create(&lined->contact, &beside->touched, &follower,
+                                                   lined->rows * (int)ck_line_places(lined), error);
+    for (int i = 0; i < lined->rows * lined->columns && !status; i++) {
+        lined->contact->mass[eights_place(lined, i)] = beside->mass[i];
+        for (int axis = 0; axis < 3; axis++)
+            *from_at(lined, i, axis) = lined->start[place_of(lined, i) + axis * lined->plane];
+    }
+    return status;
+}
+
+const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, touch};

@@ -91,6 +91,9 @@ typedef bool ck_RowPress(const struct ck_RowContact *contact, int row); // true 
 typedef unsigned ck_RowMeets(const struct ck_RowContact *contact, int row);
 // A substep of lines; see line_loop.h.
 typedef void ck_LineSubstep(const struct ck_LinedCloth *cloth, bool is_last);
+// A row's flight there, where there are surfaces, and what those push the cloth by; see line_contact_loop.c.
+typedef void ck_LineFly(const struct ck_LinedCloth *cloth, int row, bool is_last);
+typedef void ck_LinePress(const struct ck_LinedCloth *cloth);
 // A sweep over packs of springs; see sweep_list_loop.h.
 typedef void ck_SweepPacks(const struct ck_SweepList *list, bool is_turned);
 // Products with a sum each, as many as it can a second; returns how many there were.
@@ -113,6 +116,8 @@ typedef struct ck_Loops {
     ck_RowPress *row_press;
     ck_RowMeets *row_meets;
     ck_LineSubstep *line_substep;
+    ck_LineFly *line_fly;
+    ck_LinePress *line_press;
     ck_SweepPacks *sweep_packs;
     ck_Peak *peak;
 } ck_Loops;

@@ -1,4 +1,4 @@
-// Compliant springs of regular cloths, of which whole diagonals, rows and columns are solved at once: a line is a
+// Compliant springs of regular cloths, of which whole rows, diagonals and columns are solved at once: a line is a
 // tridiagonal system. A pull at one end of it is felt at the other in one sweep, where Gauss-Seidel takes one for each
 // spring between.
 #include "compliance.h"
@@ -40,13 +40,15 @@ static double tension_of(const ck_Model *model) {
 }
 
 // Time step: 0.16 of √(m·d/T), what waves across a line under a tension T allow, as it pulls along where its springs
-// lie before they move; at most 1/240 s, and a quarter of drag's time. Half as long again keeps sheets of 20×20 and of
-// 64×64 that are let go within 1 % of their path for half a second, whether their springs have 1e3 or 1e6 N/m
-// (`clothcheck bench`), but `cloth_64` with its soft corners flips there.
+// lie before they move; at most 1/240 s, half of that where there are colliders, whose pushes are of first order; and a
+// quarter of drag's time. Half as long again keeps sheets of 20×20 and of 64×64 that are let go within 1 % of their
+// path for half a second, whether their springs have 1e3 or 1e6 N/m (`clothcheck bench`), but `cloth_64` with its soft
+// corners flips there.
 static double time_step_limit(const ck_Model *model) {
     const double tension = tension_of(model),
                  across = tension > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * tension)) : INFINITY;
-    return fmin(fmin(1.0 / 240, 0.16 * across), ck_stability_drag_time(model, 0.25));
+    return fmin(fmin(model->collider_count ? 1.0 / 480 : 1.0 / 240, 0.16 * across),
+                ck_stability_drag_time(model, 0.25));
 }
 
 static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
@@ -66,8 +68,8 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     ck_Native *native;
     if (!ck_projection_fits(model, &springs))
         return ck_fail(error, CK_REFUSED,
-                       "lines are solved of regular cloths without bending springs, that nothing but springs, a field "
-                       "and drag move");
+                       "lines are solved of regular cloths without bending springs, that nothing but springs, a field, "
+                       "drag and colliders that stay move");
     translate(model, wanted, used, ledger);
     ck_Status status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
@@ -121,7 +123,7 @@ const ck_Engine ck_native_lines = {
     .version = ck_own_version,
     .method = CK_METHOD_STOERMER_LINES,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_RELEASE,
+             CK_TERM_COLLIDERS | CK_TERM_RELEASE,
     .settings = settings,
     .order = 2,
     .rest_order = 2,
@@ -130,5 +132,6 @@ const ck_Engine ck_native_lines = {
     .step = step,
     .read = ck_leapfrog_read,
     .release = release,
+    .contact = ck_native_contact,
     .destroy = ck_native_destroy,
 };

@@ -1,4 +1,5 @@
 // The kernels of position constraints, in rows, against the plain loops that they stand for.
+#include "fixture_lines.h"
 #include "fixture_loops.h"
 
 #include "constraint_kernel.h"
@@ -39,83 +40,6 @@ static void plain_project(const ck_Model *model, const ck_ProjectionRule *rule, 
     ck_add_scaled(b, weight_b * change / length, now);
 }
 
-// Particles of a line at most.
-#define LONGEST 48
-
-// Solves a full system in place, by Gauss with the largest pivot.
-static void eliminate(double a[LONGEST][LONGEST + 1], int count) {
-    for (int pivot = 0; pivot < count; pivot++) {
-        int best = pivot;
-        for (int row = pivot + 1; row < count; row++)
-            if (fabs(a[row][pivot]) > fabs(a[best][pivot])) best = row;
-        for (int column = 0; column <= count; column++) {
-            const double kept = a[pivot][column];
-            a[pivot][column] = a[best][column];
-            a[best][column] = kept;
-        }
-        for (int row = 0; row < count; row++) {
-            const double share = row == pivot ? 0 : a[row][pivot] / a[pivot][pivot];
-            for (int column = pivot; column <= count; column++) a[row][column] -= share * a[pivot][column];
-        }
-    }
-    for (int row = 0; row < count; row++) a[row][count] /= a[row][row];
-}
-
-// By how much what a spring does to its ends changes another one's length, a 1/kg each: ∇C·M⁻¹·∇C'ᵀ.
-static double couple(const ck_Model *model, const ck_Spring *one, const double *along, const ck_Spring *other,
-                     const double *other_along) {
-    const int ends[2][2] = {{one->a, one->b}, {other->a, other->b}};
-    double sum = 0;
-    for (int i = 0; i < 2; i++)
-        for (int k = 0; k < 2; k++)
-            if (ends[0][i] == ends[1][k])
-                sum += (i == k ? 1 : -1) * ck_model_inverse_mass(model, ends[0][i]) * ck_dot(along, other_along);
-    return sum;
-}
-
-// All springs of a line together, with the whole matrix.
-static void plain_line(const ck_Model *model, const ck_ProjectionRule *rule, const int *line, int count,
-                       const double *start, double *x, double *multiplier) {
-    static double matrix[LONGEST][LONGEST + 1], along[LONGEST][3];
-    const double dt = rule->dt;
-    for (int i = 0; i < count; i++) {
-        const ck_Spring *spring = &model->springs[line[i]];
-        double old[3];
-        ck_subtract(along[i], x + 3 * spring->b, x + 3 * spring->a);
-        ck_subtract(old, start + 3 * spring->b, start + 3 * spring->a);
-        const double length = ck_length(along[i]), gamma = spring->damping / (spring->stiffness * dt),
-                     compliance = 2 / (spring->stiffness * dt * dt);
-        for (int axis = 0; axis < 3; axis++) along[i][axis] /= length;
-        for (int k = 0; k <= i; k++)
-            matrix[i][k] = matrix[k][i] = couple(model, spring, along[i], &model->springs[line[k]], along[k]);
-        matrix[i][i] += compliance / (1 + gamma);
-        matrix[i][count] =
-            -(length - spring->rest + compliance * multiplier[line[i]] + gamma * (length - ck_dot(old, along[i]))) /
-            (1 + gamma);
-    }
-    eliminate(matrix, count);
-    for (int i = 0; i < count; i++) {
-        const ck_Spring *spring = &model->springs[line[i]];
-        const double change = matrix[i][count];
-        multiplier[line[i]] += change;
-        ck_add_scaled(x + 3 * spring->a, -ck_model_inverse_mass(model, spring->a) * change, along[i]);
-        ck_add_scaled(x + 3 * spring->b, ck_model_inverse_mass(model, spring->b) * change, along[i]);
-    }
-}
-
-// A line is what goes on from spring to spring by as many particles.
-static void plain_lines(const ck_Model *model, const ck_ProjectionRule *rule, const int *order, const double *start,
-                        double *x, double *multiplier) {
-    for (int first = 0, end; first < model->spring_count; first = end) {
-        const ck_Spring *spring = &model->springs[order[first]];
-        for (end = first + 1; end < model->spring_count; end++) {
-            const ck_Spring *before = &model->springs[order[end - 1]], *next = &model->springs[order[end]];
-            if (next->a != before->b || next->b - next->a != spring->b - spring->a || next->kind != spring->kind) break;
-        }
-        plain_line(model, rule, order + first, end - first, start, x, multiplier);
-    }
-}
-
 // pulls  [3*n] m: what the constraints of lines moved particles by in the substep before; this one begins with half of
 // it
 static void plain_substep(const ck_Model *model, const ck_ProjectionRule *rule, const int *order, double *x, double *v,
@@ -136,7 +60,7 @@ static void plain_substep(const ck_Model *model, const ck_ProjectionRule *rule, 
     bool *is_far = calloc(2 * rows, sizeof *is_far), *was_far = is_far + rows;
     for (uint32_t sweep = 0; sweep < rule->iterations; sweep++) {
         bool has_lines = rule->projection == CK_PROJECT_LINES;
-        if (has_lines) plain_lines(model, rule, order, start, x, multipliers);
+        if (has_lines) fixture_sweep_lines(model, rule->dt, order, start, x, multipliers);
         for (int k = 0; k < model->spring_count && !has_lines; k++) {
             const int i =
                 order[ck_sweep_is_turned(rule->projection, sweep, rule->iterations) ? model->spring_count - 1 - k : k];

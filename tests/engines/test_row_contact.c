@@ -1,4 +1,5 @@
 // Contact of regular cloths whose constraints are projected, in rows, against the particles one by one.
+#include "fixture_lines.h"
 #include "fixture_loops.h"
 
 #include "constraint_kernel.h"
@@ -48,31 +49,46 @@ static void leave_rows(ck_Model *model, uint32_t sweeps) {
     assert_false(ck_projection_fits(model, &springs));
 }
 
-// XPBD spring by spring and particle by particle, by the formulas that rows stand for.
+// XPBD spring by spring, or line by line, and particle by particle, by the formulas that rows stand for.
+//   pulls  [3*n] m: what springs moved in the last substep, and not surfaces: lines begin with half of it
 typedef struct Plain {
     const ck_Model *model;
+    bool has_lines;
     ck_Contact *contact;
-    double dt, *x, *v, *start, *from, *multipliers;
+    double dt, *x, *v, *before, *start, *from, *pulls, *multipliers; // before: v a substep earlier
     ck_Pressed *pressed;
     int *order;
 } Plain;
+
+// m/s: lines take drag in the middle of a substep, XPBD after it.
+static double speed_after(const Plain *plain, double v, double field) {
+    const double half = plain->has_lines ? 0.5 * plain->model->drag * plain->dt : 0;
+    return ((1 - half) * v + plain->dt * field) / (1 + half);
+}
 
 static void plain_fly(const Plain *plain) {
     const ck_Model *model = plain->model;
     for (int i = 0; i < model->particle_count; i++) {
         double *x = plain->x + 3 * i, field[3], next[3], v[3];
+        memcpy(plain->before + 3 * i, plain->v + 3 * i, sizeof v);
         memcpy(plain->start + 3 * i, x, sizeof v);
         memcpy(plain->from + 3 * i, x, sizeof v);
         plain->pressed[i] = (ck_Pressed){0};
         if (model->pinned[i]) continue;
         ck_model_field(model, i, field);
-        for (int axis = 0; axis < 3; axis++) next[axis] = v[axis] = plain->v[3 * i + axis] + plain->dt * field[axis];
+        for (int axis = 0; axis < 3; axis++)
+            next[axis] = v[axis] = speed_after(plain, plain->v[3 * i + axis], field[axis]);
+        for (int axis = 0; axis < 3 && plain->has_lines; axis++) // what moves it, drag and all
+            field[axis] = (next[axis] - plain->v[3 * i + axis]) / plain->dt;
         if (ck_contact_meet(plain->contact, model->mass[i], field, x, v)) {
             memcpy(plain->from + 3 * i, x, sizeof v);
             ck_add_scaled(plain->from + 3 * i, -plain->dt, v);
+            memcpy(plain->before + 3 * i, v, sizeof v);
+            ck_add_scaled(plain->before + 3 * i, -plain->dt, field);
         } else {
             ck_add_scaled(x, plain->dt, next);
         }
+        if (plain->has_lines) ck_add_scaled(x, 0.5, plain->pulls + 3 * i);
     }
 }
 
@@ -94,44 +110,76 @@ static void plain_spring(const Plain *plain, int index) {
     ck_add_scaled(b, weight_b * change / length, now);
 }
 
+// All springs once, and what they pull.
+static void plain_sweep(const Plain *plain) {
+    const ck_Model *model = plain->model;
+    if (!plain->has_lines) {
+        for (int k = 0; k < model->spring_count; k++) plain_spring(plain, plain->order[k]);
+        return;
+    }
+    const int count = 3 * model->particle_count;
+    for (int i = 0; i < count; i++) plain->pulls[i] -= plain->x[i];
+    fixture_sweep_lines(model, plain->dt, plain->order, plain->start, plain->x, plain->multipliers);
+    for (int i = 0; i < count; i++) plain->pulls[i] += plain->x[i];
+}
+
 static void plain_substep(const Plain *plain, uint32_t sweeps) {
     const ck_Model *model = plain->model;
     plain_fly(plain);
+    for (int i = 0; i < 3 * model->particle_count; i++) plain->pulls[i] *= 0.5;
     memset(plain->multipliers, 0, sizeof(double) * (size_t)model->spring_count);
     for (uint32_t sweep = 0; sweep < sweeps; sweep++) {
-        for (int k = 0; k < model->spring_count; k++) plain_spring(plain, plain->order[k]);
+        plain_sweep(plain);
         for (int i = 0; i < model->particle_count; i++)
             if (!model->pinned[i])
                 ck_contact_project(plain->contact, model->mass[i], plain->from + 3 * i, &plain->pressed[i],
                                    plain->x + 3 * i);
     }
-    const double rate = 1 / (1 + model->drag * plain->dt) / plain->dt;
+    const double rate = plain->has_lines ? 1 / plain->dt : 1 / (1 + model->drag * plain->dt) / plain->dt;
     for (int i = 0; i < 3 * model->particle_count; i++) plain->v[i] = rate * (plain->x[i] - plain->from[i]);
 }
 
-static End run_plain(const ck_Model *model, const ck_Settings *settings) {
+// Half a substep back, as a leapfrog keeps speeds.
+static void turn_back(const Plain *plain) {
+    for (int i = 0; i < plain->model->particle_count; i++) {
+        double field[3];
+        ck_model_field(plain->model, i, field);
+        ck_add_scaled(field, -plain->model->drag, plain->v + 3 * i);
+        if (!plain->model->pinned[i]) ck_add_scaled(plain->v + 3 * i, -0.5 * plain->dt, field);
+    }
+}
+
+static End run_plain(const ck_Model *model, const char *engine, const ck_Settings *settings) {
     const size_t count = 3 * (size_t)model->particle_count, springs = (size_t)model->spring_count;
-    double *state = malloc((4 * count + springs) * sizeof *state);
+    double *state = calloc(6 * count + springs, sizeof *state);
     Plain plain = {.model = model,
+                   .has_lines = !strcmp(engine, "native-lines"),
                    .dt = model->step / settings->substeps,
                    .x = state,
                    .v = state + count,
                    .start = state + 2 * count,
                    .from = state + 3 * count,
-                   .multipliers = state + 4 * count,
+                   .pulls = state + 4 * count,
+                   .before = state + 5 * count,
+                   .multipliers = state + 6 * count,
                    .pressed = malloc(sizeof *plain.pressed * count),
                    .order = malloc(sizeof *plain.order * springs)};
     End end = {calloc(2 * count + 3, sizeof(double)), 2 * count + 3};
     assert_int_equal(ck_contact_create(&plain.contact, model, plain.dt, NULL), CK_OK);
-    assert_int_equal(ck_sweep_order(model, CK_PROJECT_SPRINGS, settings->iterations, plain.order), CK_OK);
+    assert_int_equal(ck_sweep_order(model, plain.has_lines ? CK_PROJECT_LINES : CK_PROJECT_SPRINGS,
+                                    settings->iterations, plain.order),
+                     CK_OK);
     memcpy(plain.x, model->position, count * sizeof *state);
     memcpy(plain.v, model->velocity, count * sizeof *state);
+    if (plain.has_lines) turn_back(&plain);
     for (int frame = 0; frame < model->frame_count; frame++) {
         memset(plain.contact->impulse, 0, sizeof plain.contact->impulse);
         for (uint32_t i = 0; i < settings->substeps; i++) plain_substep(&plain, settings->iterations);
     }
     memcpy(end.numbers, plain.x, count * sizeof *state);
-    for (size_t i = 0; i < count; i++) end.numbers[count + i] = model->step * plain.v[i];
+    for (size_t i = 0; i < count; i++)
+        end.numbers[count + i] =
+            model->step * (plain.v[i] + (plain.has_lines ? 0.5 * (plain.v[i] - plain.before[i]) : 0));
     for (size_t axis = 0; axis < 3; axis++) end.numbers[2 * count + axis] = plain.contact->impulse[axis] / model->step;
     free(plain.contact);
     free(plain.pressed);
@@ -165,9 +213,9 @@ static void compare(const char *body, const char *colliders, const char *engine,
     settings.threads = 1;
     const bool are_bars = !strcmp(engine, "native-bars");
     if (are_bars) leave_rows(&fixture.model, sweeps);
-    End alone = are_bars ? run(&fixture.model, engine, &settings) : run_plain(&fixture.model, &settings);
+    End alone = are_bars ? run(&fixture.model, engine, &settings) : run_plain(&fixture.model, engine, &settings);
     for (int i = 0; i < 3 * fixture.model.particle_count; i++) fixture.model.position[i] += 1e-13 * sin(i);
-    End beside = are_bars ? run(&fixture.model, engine, &settings) : run_plain(&fixture.model, &settings);
+    End beside = are_bars ? run(&fixture.model, engine, &settings) : run_plain(&fixture.model, engine, &settings);
     const double growth = distance(&alone, &beside) / 1e-13;
     // each of 500 substeps rounds by 1e-16
     assert_near(text, distance(&alone, &widest), 0, fmin(1e-12 * growth + 1e-10, 1e-6));
@@ -198,6 +246,7 @@ static void test_shapes(void **state) {
             for (uint32_t sweeps = 1; sweeps < 5; sweeps += 3) {
                 compare(bodies[body], colliders[i], "native-bars", sweeps);
                 compare(bodies[body], colliders[i], "native-xpbd", sweeps);
+                compare(bodies[body], colliders[i], "native-lines", sweeps);
             }
     // rows enough for two threads
     static const char tall[] = "cloth: {rows: 40, columns: 5, spacing: 0.02, mass: 0.2, origin: [-0.04, 0.25, -0.4], "

@@ -4,12 +4,20 @@
 
 #include "constraint_kernel.h"
 
+//   touch  lets a cloth touch what its set-up says; NULL: the kind knows no contact
 typedef struct ck_ProjectionKind {
     ck_Status (*create)(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
     void (*destroy)(ck_ProjectedCloth *cloth);
     void (*step)(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
     void (*read)(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before);
+    ck_Status (*touch)(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 } ck_ProjectionKind;
+
+// The first members of each kind's structure.
+typedef struct ck_ProjectionHead {
+    const ck_ProjectionKind *kind;
+    struct ck_RowContact *contact; // NULL: there is nothing to touch
+} ck_ProjectionHead;
 
 extern const ck_ProjectionKind ck_projection_rows;
 #ifndef CK_SINGLE

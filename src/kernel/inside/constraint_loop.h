@@ -36,7 +36,8 @@ typedef struct ck_Stripe {
 typedef enum ck_Direction { CK_IS_DOWN, CK_IS_ALONG, CK_IS_ACROSS, CK_DIRECTIONS } ck_Direction;
 
 struct ck_ProjectedCloth {
-    const ck_ProjectionKind *kind; // the first member
+    const ck_ProjectionKind *kind; // as ck_ProjectionHead
+    struct ck_RowContact *contact;
     const ck_Loops *loops;
     ck_Rows rows;
     ck_ProjectionRule rule;
@@ -56,7 +57,6 @@ struct ck_ProjectedCloth {
     ck_Real *is_free;
     ck_Real *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
     bool *is_held;                        // [rows] a pin in the row or the one below
-    struct ck_RowContact *contact;        // NULL: there is nothing to touch
     long *far_from;                       // [rows] sweep from which on bars are looked at one by one
     ck_Real *state, *springs, *multipliers;
 };

@@ -270,10 +270,18 @@ CK_INLINE void predict(const struct ck_LinedCloth *cloth, int row, bool is_last)
     }
 }
 
-// Along rows as soon as they have flown.
-CK_INLINE void sweep(const struct ck_LinedCloth *cloth, bool begins, bool is_last, const int terms) {
+CK_INLINE void begin_row(const struct ck_LinedCloth *cloth, const struct ck_LinedCloth *shared, int row, bool is_last) {
+    if (!cloth->contact)
+        predict(cloth, row, is_last);
+    else if (row < cloth->rows)
+        cloth->loops->line_fly(shared, row, is_last);
+}
+
+// Along rows as soon as they have flown. What is shared is what leaves this file.
+CK_INLINE void sweep(const struct ck_LinedCloth *cloth, const struct ck_LinedCloth *shared, bool begins, bool is_last,
+                     const int terms) {
     for (int row = 0; row < cloth->rows; row += CK_LANES) {
-        for (int i = row; i < row + CK_LANES && begins; i++) predict(cloth, i, is_last);
+        for (int i = row; i < row + CK_LANES && begins; i++) begin_row(cloth, shared, i, is_last);
         solve_along(cloth, row, terms);
     }
     if (cloth->springs[CK_LINES_DOWN_RIGHT].rest > 0) {
@@ -281,6 +289,7 @@ CK_INLINE void sweep(const struct ck_LinedCloth *cloth, bool begins, bool is_las
         solve_down(cloth, CK_LINES_DOWN_LEFT, -1, terms);
     }
     solve_down(cloth, CK_LINES_DOWN, 0, terms);
+    if (cloth->contact) cloth->loops->line_press(shared);
 }
 
 static void forget_multipliers(const struct ck_LinedCloth *cloth) {
@@ -294,9 +303,9 @@ void CK_LOOP(ck_line_substep)(const struct ck_LinedCloth *shared, bool is_last) 
     const struct ck_LinedCloth local = *shared, *cloth = &local; // known to share no memory with the arrays
     if (cloth->terms & REPEATED) forget_multipliers(cloth);
     for (uint32_t i = 0; i < cloth->rule.iterations; i++) switch (cloth->terms) {
-        case 0: sweep(cloth, i == 0, is_last, 0); break;
-        case DAMPED: sweep(cloth, i == 0, is_last, DAMPED); break;
-        case REPEATED: sweep(cloth, i == 0, is_last, REPEATED); break;
-        default: sweep(cloth, i == 0, is_last, DAMPED | REPEATED); break;
+        case 0: sweep(cloth, shared, i == 0, is_last, 0); break;
+        case DAMPED: sweep(cloth, shared, i == 0, is_last, DAMPED); break;
+        case REPEATED: sweep(cloth, shared, i == 0, is_last, REPEATED); break;
+        default: sweep(cloth, shared, i == 0, is_last, DAMPED | REPEATED); break;
         }
 }

@@ -21,9 +21,11 @@ typedef enum ck_LineKind {
     CK_LINE_KINDS
 } ck_LineKind;
 
-// Particles row by row, each coordinate in a plane of its own. The first member is the kind of projection.
+// Particles row by row, each coordinate in a plane of its own.
 struct ck_LinedCloth {
-    const ck_ProjectionKind *kind;
+    const ck_ProjectionKind *kind; // as ck_ProjectionHead
+    struct ck_RowContact *contact; // of the rows with what is beside them, eight places a row of its own
+    ck_Follower follower;          // which knows particles, as contact knows places
     const ck_Loops *loops;
     ck_ProjectionRule rule;
     double carried, push[3]; // as in constraint_loop.h
@@ -43,6 +45,11 @@ struct ck_LinedCloth {
     double *scratch;                       // [the larger of rows and columns*CK_LINE_SCRATCH]
     double *state;
 };
+
+// Places of a row, with those beside it.
+CK_INLINE long ck_line_places(const struct ck_LinedCloth *cloth) {
+    return cloth->stride - CK_MARGIN;
+}
 
 // What elimination leaves of each spring: its direction; its Δλ as long as the one after it moves nothing; and the
 // share that its own Δλ then takes from that of the one before.

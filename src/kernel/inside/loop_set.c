@@ -14,6 +14,8 @@ ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_NearChunk CK_LOOP(ck_near_chunk);
 ck_LineSubstep CK_LOOP(ck_line_substep);
+ck_LineFly CK_LOOP(ck_line_fly);
+ck_LinePress CK_LOOP(ck_line_press);
 ck_SweepPacks CK_LOOP(ck_sweep_packs);
 ck_RowFly CK_LOOP(ck_row_fly);
 ck_RowPress CK_LOOP(ck_row_press);
@@ -38,6 +40,8 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .list_chunk = CK_LOOP(ck_list_chunk),
     .near_chunk = CK_LOOP(ck_near_chunk),
     .line_substep = CK_LOOP(ck_line_substep),
+    .line_fly = CK_LOOP(ck_line_fly),
+    .line_press = CK_LOOP(ck_line_press),
     .sweep_packs = CK_LOOP(ck_sweep_packs),
     .row_fly = CK_LOOP(ck_row_fly),
     .row_press = CK_LOOP(ck_row_press),
