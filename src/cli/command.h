@@ -83,6 +83,7 @@ typedef struct ck_Arguments {
     bool runs_nothing;
     bool appends, forces;             // into a directory that holds other results: keeps them, replaces them
     int rounds, largest;              // of bench
+    const char *only;                 // of bench: a part or a body; NULL: all
     double case_limit, study_timeout; // of study: s of wall time of a case, and of all; 0: any
     bool is_part, uses_slurm, finishes, is_dry;
     const char *partition, *slurm_time;   // as sbatch takes them; NULL: not given

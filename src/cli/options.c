@@ -173,6 +173,8 @@ static const Option table[] = {
     {"damping", "N*S/M", 0, CK_TAKES_SPRING, NUMBER, PLACE(damping), 0, 1e12, .fallback = "0",
      .help = "of the spring, where no setting stands for it"},
     {"rounds", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(rounds), 1, 99, .fallback = "7", .help = "repeats, 1 to 99"},
+    {"only", "WHAT", 0, CK_TAKES_BENCH, TEXT, PLACE(only),
+     .help = "a part, steps, seconds, strain, costs or growth; or a body, cloth, rope, ropes, mesh or on_ball"},
     {"largest", "N", 0, CK_TAKES_BENCH, COUNT, PLACE(largest), 16, 2048, .fallback = "1024",
      .help = "side of the largest cloth, 16 to 2048"},
 };

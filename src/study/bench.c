@@ -381,9 +381,10 @@ static ck_Status grow(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *err
     return status;
 }
 
-// What is timed in one child.
+// What is timed in one child: a part of the whole, on a body.
 typedef struct Section Section;
 struct Section {
+    const char *part;
     ck_Status (*write)(ck_Csv *csv, const Section *section, ck_Error *error);
     const ck_BenchBody *body;
     const ck_BenchCloth *cloth;
@@ -420,8 +421,9 @@ static ck_Status write_section(ck_Csv *csv, void *context, ck_Error *error) {
 static ck_Status add_section(ck_Csv *csv, Section section, ck_Error *error) {
     const ck_Limits limits = ck_limits_default();
     const ck_BenchBody *body = section.body;
+    const char *only = section.options->only;
     const bool is_taken = body->kind == CK_BENCH_ROPE || (int)body->rows <= section.options->largest;
-    if (!is_taken) return CK_OK;
+    if (!is_taken || (only && strcmp(only, section.part) && strcmp(only, body->name))) return CK_OK;
     if (section.options->progress) section.options->progress(body->name, "its engines");
     ck_Status status = ck_csv_from_child(csv, write_section, &section, &limits, error);
     if (status != CK_REFUSED) return status;
@@ -430,20 +432,38 @@ static ck_Status add_section(ck_Csv *csv, Section section, ck_Error *error) {
     return CK_OK;
 }
 
+static const char *const parts[] = {"steps", "seconds", "strain", "costs", "growth"};
+enum { STEPS, SECONDS, STRAIN_PART, COSTS, GROWTH, PARTS };
+
+static ck_Status check_only(const char *only, ck_Error *error) {
+    for (size_t i = 0; only && i < PARTS; i++)
+        if (!strcmp(only, parts[i])) return CK_OK;
+    for (size_t i = 0; only && i < BODIES; i++)
+        if (!strcmp(only, bodies[i].name)) return CK_OK;
+    if (!only) return CK_OK;
+    return ck_fail(error, CK_BAD_INPUT,
+                   "--only %s: there are the parts steps, seconds, strain, costs and growth, and the bodies cloth, "
+                   "rope, ropes, mesh and on_ball",
+                   only);
+}
+
 ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
     const double peak = find_peak(), each[3] = {peak, peak, peak};
     const ck_BenchBody growing = {"growing cloth", CK_BENCH_CLOTH, 1, 1};
     ck_Model none = {0};
     ck_bench_add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
-    ck_Status status = CK_OK;
+    ck_Status status = check_only(options->only, error);
     for (size_t i = 0; i < BODIES && !status; i++)
-        status = add_section(csv, (Section){write_race, &bodies[i], NULL, options, peak}, error);
+        status = add_section(csv, (Section){parts[STEPS], write_race, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < BODIES && !status; i++)
-        status = add_section(csv, (Section){write_seconds, &bodies[i], NULL, options, peak}, error);
+        status = add_section(csv, (Section){parts[SECONDS], write_seconds, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < 2 && !status; i++)
-        status = add_section(csv, (Section){write_residuals, &bodies[i], NULL, options, peak}, error);
+        status =
+            add_section(csv, (Section){parts[STRAIN_PART], write_residuals, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < CK_BENCH_CLOTHS && !status; i++)
-        status = add_section(csv, (Section){write_costs, &ck_bench_cloths[i].body, &ck_bench_cloths[i], options, peak},
-                             error);
-    return status ? status : add_section(csv, (Section){write_growth, &growing, NULL, options, peak}, error);
+        status = add_section(
+            csv, (Section){parts[COSTS], write_costs, &ck_bench_cloths[i].body, &ck_bench_cloths[i], options, peak},
+            error);
+    return status ? status
+                  : add_section(csv, (Section){parts[GROWTH], write_growth, &growing, NULL, options, peak}, error);
 }

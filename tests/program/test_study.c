@@ -343,12 +343,32 @@ static void test_bench(void **state) {
     free(csv);
 }
 
+// A part of it by its name, or by its body's.
+static void test_bench_only(void **state) {
+    (void)state;
+    static const struct {
+        const char *only, *is_there, *is_not;
+    } cases[] = {{"growth", ",growth_step_time,", ",update_time,"}, {"rope", "rope,1000,999,native-verlet,,", "mesh"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char arguments[200];
+        snprintf(arguments, sizeof arguments, "bench --rounds 1 --largest 16 --only %s --out %s/only", cases[i].only,
+                 fixture_directory);
+        assert_int_equal(fixture_program(arguments), 0);
+        char *csv = fixture_read("only/bench.csv");
+        assert_non_null(csv);
+        assert_non_null(strstr(csv, cases[i].is_there));
+        assert_null(strstr(csv, cases[i].is_not));
+        free(csv);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits), cmocka_unit_test(test_kill),        cmocka_unit_test(test_kill_comparison),
-        cmocka_unit_test(test_shards), cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),
-        cmocka_unit_test(test_needs),  cmocka_unit_test(test_bench),       cmocka_unit_test(test_demo),
-        cmocka_unit_test(test_half),   cmocka_unit_test(test_keeping),     cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_limits),     cmocka_unit_test(test_kill),        cmocka_unit_test(test_kill_comparison),
+        cmocka_unit_test(test_shards),     cmocka_unit_test(test_two_at_once), cmocka_unit_test(test_critical),
+        cmocka_unit_test(test_needs),      cmocka_unit_test(test_bench),       cmocka_unit_test(test_demo),
+        cmocka_unit_test(test_half),       cmocka_unit_test(test_keeping),     cmocka_unit_test(test_precision),
+        cmocka_unit_test(test_bench_only),
     };
     return cmocka_run_group_tests(tests, fixture_make_directory, fixture_remove_directory);
 }

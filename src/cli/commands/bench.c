@@ -18,8 +18,11 @@ static int run(const ck_Command *command, int argc, char **argv) {
     ck_Csv csv = {0};
     ck_Status status = ck_arguments_read(&arguments, command, argc, argv, &error);
     const char *out = arguments.out;
-    ck_BenchOptions options = {
-        .rounds = arguments.rounds, .budget = 20, .largest = arguments.largest, .progress = show_progress};
+    ck_BenchOptions options = {.rounds = arguments.rounds,
+                               .budget = 20,
+                               .largest = arguments.largest,
+                               .only = arguments.only,
+                               .progress = show_progress};
     int failed = status ? 0 : ck_path_make(out);
     if (failed) status = ck_fail(&error, CK_IO, "%s: %s", out, strerror(failed));
     if (!status) status = ck_csv_open(&csv, out, &ck_layouts[CK_BENCH], &error);
@@ -46,7 +49,7 @@ const ck_Command ck_command_bench = {
         "ball,\n"
         "on meshes of 289, 3,025 and 29,929 nodes, a rope of 1000 and 128 ropes of 32, and native-verlet as a cloth\n"
         "grows. Of cloths of 20x20 and 64x64 that are let go, with springs of 1e3 and 1e6 N/m, each engine's cheapest\n"
-        "settings within 1 % and 0.1 % of a fine reference. Writes bench.csv into --out.",
+        "settings within 1 % and 0.1 % of a fine reference: `bench --only costs`. Writes bench.csv into --out.",
     .groups = CK_TAKES_FORM | CK_TAKES_OUT | CK_TAKES_BENCH,
     .out = "out",
     .run = run,
