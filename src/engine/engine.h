@@ -59,6 +59,7 @@ typedef struct ck_Engine {
     bool is_single;             // it computes in single precision
     bool is_stock;              // as its users run it: nothing is corrected, and nothing is promised of it
     int order;                  // order of convergence of its elastic motion; 0: it models no elasticity
+    int damped_order;           // of that where springs are damped; 0: the same
     int rest_order;             // of its rest; 0: it is exact at any step, or models no elasticity
     int damped_rest_order;      // of its rest where springs are damped
 

@@ -9,10 +9,11 @@
 // the other half the same way back. That is the order of ck_sweep_order and ck_sweep_is_turned.
 //
 // Lines: a sweep solves all springs of a line together, (∇C·M⁻¹·∇Cᵀ + 2·α̃/(1 + γ̃))·Δλ = (−C − 2·α̃·λ − γ̃·∇C·(x −
-// x_start))/(1 + γ̃), which is tridiagonal; see CK_LINES_KEPT: first each row, then each diagonal down right and down
-// left, then each column. So what pulls at a line's end is felt at its other end at once. One thread alone does that,
-// sweep by sweep: a second one would find half of each kind's particles in the other processor's cache, and at 64×64 both
-// took twice as long as one. Source of the rule: Macklin, Müller, Chentanez 2016, eq. 18 and 26; of the elimination: Thomas 1949.
+// x_start))/(1 + γ̃), which is tridiagonal, the 2 being of CK_LINES_KEPT: first each row, then each diagonal down right
+// and down left, then each column. So what pulls at a line's end is felt at its other end at once. One thread alone
+// does that, sweep by sweep: a second one would find half of each kind's particles in the other processor's cache, and
+// at 64×64 both took twice as long as one. Source of the rule: Macklin, Müller, Chentanez 2016, eq. 18 and 26; of the
+// elimination: Thomas 1949.
 #ifndef CK_CONSTRAINT_KERNEL_H
 #define CK_CONSTRAINT_KERNEL_H
 
@@ -31,9 +32,10 @@
 // The share of what the last substep's constraints moved particles by that lines begin a substep with, and leave to it.
 // Its multipliers are then those of the last one, halved, and what it finds; with α̃/(1 − kept) for these, a spring
 // obeys C_next = −α̃·(2·λ − λ_last), its force carried on to the substep's end: of second order in dt, where XPBD's
-// C_next = −α̃·λ is of first. What is pulled has on average the direction that it has at the substep's start. A sweep
-// that leaves a share 1 − δ of an error swings it by √(δ/(1 − kept)) a substep, twice as much as without; that grows
-// where kept is above a half, and decays below.
+// C_next = −α̃·λ is of first; dampers stay of first order, as a line sees rates before the other kinds' lines. What is
+// pulled has on average the direction that it has at the substep's start. A sweep that leaves a share 1 − δ of an error
+// swings it by √(δ/(1 − kept)) a substep, twice as much as without; that grows where kept is above a half, and decays
+// below.
 #define CK_LINES_KEPT 0.5
 
 typedef struct ck_ProjectionRule {
@@ -55,6 +57,7 @@ bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs);
 //   position, velocity, before  [3*n] m, m/s, and m/s a substep earlier
 //   inverse_mass                [n] 1/kg, 0 where pinned
 //   beside                      what its particles may touch, in their order; NULL: nothing
+//   last                        the same cloth as it was laid out before, from which it goes on; NULL: it starts
 typedef struct ck_ProjectionSetup {
     const ck_Loops *loops;
     const ck_Model *model;
@@ -62,11 +65,13 @@ typedef struct ck_ProjectionSetup {
     const ck_ProjectionRule *rule;
     const double *position, *velocity, *before, *inverse_mass;
     const struct ck_RowContact *beside;
+    const ck_ProjectedCloth *last;
 } ck_ProjectionSetup;
 
 // In the precision of the loops: in single precision, places are told from an origin that moves with the cloth.
-// Surfaces are copied. Memory: 10 doubles a particle, 8 more where there are surfaces, four more for lines, and one a
-// spring for XPBD and lines with several sweeps. Errors: CK_NO_MEMORY. Free with ck_projection_destroy.
+// Surfaces are copied. Memory: 10 doubles a particle, 8 more where there are surfaces (20 for lines), four more for
+// lines, and one a spring for XPBD and lines with several sweeps. Errors: CK_NO_MEMORY. Free with
+// ck_projection_destroy.
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 

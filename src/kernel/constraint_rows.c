@@ -131,7 +131,7 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     const ck_Model *model = setup->model;
     ck_ProjectedCloth *cloth = calloc(1, sizeof *cloth);
     if (!cloth) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    cloth->kind = &ck_projection_rows;
+    cloth->head.kind = &ck_projection_rows;
     cloth->loops = setup->loops;
     cloth->rows = ck_rows_of(model);
     cloth->mass = (ck_Real)model->mass[0];
@@ -162,11 +162,11 @@ const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run
 #else
 // What moves starts as without contact.
 static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
-    ck_Status status = ck_row_contact_of_rows(&cloth->contact, setup->beside, &cloth->rows, error);
+    ck_Status status = ck_row_contact_of_rows(&cloth->head.contact, setup->beside, &cloth->rows, error);
     if (status) return status;
-    cloth->contact->x = cloth->x;
-    memcpy(cloth->contact->from, cloth->start, 3 * sizeof *cloth->start * cloth->rows.size);
-    cloth->from = cloth->contact->from;
+    cloth->head.contact->x = cloth->x;
+    memcpy(cloth->head.contact->from, cloth->start, 3 * sizeof *cloth->start * cloth->rows.size);
+    cloth->from = cloth->head.contact->from;
     return CK_OK;
 }
 

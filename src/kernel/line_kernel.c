@@ -17,14 +17,29 @@ static long padded(long count) {
     return (count + CK_STRIPE - 1) / CK_STRIPE * CK_STRIPE;
 }
 
+static long place_of(const struct ck_LinedCloth *lined, int particle) {
+    return particle / lined->columns * lined->stride + particle % lined->columns;
+}
+
+// The first substep of what begins to move finds half of its forces, as a leapfrog's first kick is half of one. The
+// next one begins with all of that, so that half of it is told to be twice as much.
+static void end_start(struct ck_LinedCloth *lined) {
+    for (int i = 0; i < lined->rows * lined->columns; i++)
+        for (int axis = 0; axis < 3 && lined->is_fresh[i]; axis++) {
+            const long at = place_of(lined, i) + axis * lined->plane;
+            lined->flown[at] = 2 * lined->flown[at] - lined->x[at];
+        }
+    free(lined->is_fresh);
+    lined->is_fresh = NULL;
+}
+
 static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     struct ck_LinedCloth *lined = of(cloth);
     (void)waves; // one thread alone
-    for (uint32_t i = 0; i < substeps; i++) lined->loops->line_substep(lined, i + 1 == substeps);
-}
-
-static long place_of(const struct ck_LinedCloth *lined, int particle) {
-    return particle / lined->columns * lined->stride + particle % lined->columns;
+    for (uint32_t i = 0; i < substeps; i++) {
+        lined->loops->line_substep(lined, i + 1 == substeps);
+        if (lined->is_fresh) end_start(lined);
+    }
 }
 
 // A particle's number among places in rows of eight.
@@ -34,7 +49,7 @@ static int eights_place(const struct ck_LinedCloth *lined, int particle) {
 
 // m: where contact measures a particle's way from.
 static double *from_at(const struct ck_LinedCloth *lined, int particle, int axis) {
-    return lined->contact->from + ck_tile_of(eights_place(lined, particle)) + axis * CK_STRIPE;
+    return lined->head.contact->from + ck_tile_of(eights_place(lined, particle)) + axis * CK_STRIPE;
 }
 
 static void read_state(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
@@ -43,13 +58,14 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
     for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
         const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
         position[i] = lined->x[at];
-        velocity[i] = rate * (lined->x[at] - (lined->contact ? *from_at(lined, i / 3, i % 3) : lined->start[at]));
+        velocity[i] = rate * (lined->x[at] - (lined->head.contact ? *from_at(lined, i / 3, i % 3) : lined->start[at]));
         before[i] = rate * lined->before[at];
     }
 }
 
 static void destroy(ck_ProjectedCloth *cloth) {
     free(of(cloth)->state);
+    free(of(cloth)->is_fresh);
     free(cloth);
 }
 
@@ -91,7 +107,8 @@ static bool allocate(struct ck_LinedCloth *lined) {
     lined->start_tiles = take(&next, tiles);
     lined->scratch = take(&next, CK_LINE_SCRATCH * longest);
     for (int kind = 0; kind < CK_LINE_KINDS; kind++) lined->multiplier[kind] = take(&next, multipliers);
-    return true;
+    lined->is_fresh = malloc(sizeof *lined->is_fresh * (size_t)(lined->rows * lined->columns));
+    return lined->is_fresh != NULL;
 }
 
 // Springs give way by rounding at least, or lines that reach straight from pin to pin would have no solution.
@@ -111,18 +128,21 @@ static void set_springs(struct ck_LinedCloth *lined, const ck_RowSprings *spring
     }
 }
 
-// Places as they are, and as velocities say that they were.
+// Places as they are, and as velocities say that they were. What moved before keeps its pulls.
 static void start_moving(struct ck_LinedCloth *lined, const ck_ProjectionSetup *setup) {
     const double rate = lined->rule.keep / lined->rule.dt;
+    const struct ck_LinedCloth *last = of(setup->last);
     for (int i = 0; i < lined->rows * lined->columns; i++) {
         const long at = place_of(lined, i);
         lined->weight[at] = setup->inverse_mass[i];
         lined->turned_weight[i % lined->columns * lined->turned_stride + i / lined->columns] = setup->inverse_mass[i];
+        const bool goes_on = last && last->weight[at] > 0 && !(last->is_fresh && last->is_fresh[i]);
+        lined->is_fresh[i] = setup->inverse_mass[i] > 0 && !goes_on;
         for (int axis = 0; axis < 3; axis++) {
             const long one = at + axis * lined->plane;
             lined->x[one] = setup->position[3 * i + axis];
             lined->start[one] = lined->x[one] - setup->velocity[3 * i + axis] / rate;
-            lined->flown[one] = lined->x[one];
+            lined->flown[one] = lined->x[one] - (goes_on ? last->x[one] - last->flown[one] : 0);
             lined->before[one] = setup->before[3 * i + axis] / rate;
         }
     }
@@ -134,7 +154,7 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     const ck_ProjectionRule *rule = setup->rule;
     struct ck_LinedCloth *lined = calloc(1, sizeof *lined);
     if (!lined) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    *lined = (struct ck_LinedCloth){.kind = &ck_projection_lines,
+    *lined = (struct ck_LinedCloth){.head.kind = &ck_projection_lines,
                                     .loops = setup->loops,
                                     .rule = *rule,
                                     .carried = rule->carry * rule->keep,
@@ -174,10 +194,10 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
     const ck_RowContact *beside = setup->beside;
     const ck_Follower follower = {lined, meet, press};
     lined->follower = beside->follower;
-    const ck_Status status = ck_row_contact_create(&lined->contact, &beside->touched, &follower,
+    const ck_Status status = ck_row_contact_create(&lined->head.contact, &beside->touched, &follower,
                                                    lined->rows * (int)ck_line_places(lined), error);
     for (int i = 0; i < lined->rows * lined->columns && !status; i++) {
-        lined->contact->mass[eights_place(lined, i)] = beside->mass[i];
+        lined->head.contact->mass[eights_place(lined, i)] = beside->mass[i];
         for (int axis = 0; axis < 3; axis++)
             *from_at(lined, i, axis) = lined->start[place_of(lined, i) + axis * lined->plane];
     }

@@ -52,7 +52,7 @@ static void run_down(void *state, long block, int wave) {
         const long sweep = block * cloth->depth + i;
         if (row < 0 || row >= rows || sweep >= cloth->sweeps) continue;
         const bool begins = sweep % cloth->rule.iterations == 0;
-        if (cloth->contact) end_down(cloth, row, visits.ends[visits.count]);
+        if (cloth->head.contact) end_down(cloth, row, visits.ends[visits.count]);
         visits.at[visits.count++] =
             (ck_Visit){sweep, row, {begins && row == 0 ? 0 : -1, begins && row + 1 < rows ? row + 1 : -1}};
     }
@@ -135,11 +135,11 @@ static void run_both_ways(void *state, long step, bool runs_upper, bool runs_low
     for (int i = stage.first; i < stage.end; i++) {
         const int place = place_of(ways, &stage, i);
         if (runs_upper && place < ways->upper) {
-            if (ways->cloth->contact) end_upper(place, stage.is_out, visits.ends[visits.count]);
+            if (ways->cloth->head.contact) end_upper(place, stage.is_out, visits.ends[visits.count]);
             visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place);
         }
         if (!runs_lower) continue;
-        if (ways->cloth->contact) end_lower(ways, place, stage.is_out, visits.ends[visits.count]);
+        if (ways->cloth->head.contact) end_lower(ways, place, stage.is_out, visits.ends[visits.count]);
         visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place);
     }
     ways->cloth->loops->projection_visits(ways->cloth, &visits);

@@ -126,6 +126,7 @@ const ck_Engine ck_native_lines = {
              CK_TERM_COLLIDERS | CK_TERM_RELEASE,
     .settings = settings,
     .order = 2,
+    .damped_order = 1, // a line sees rates that the other kinds' lines have yet to change
     .rest_order = 2,
     .damped_rest_order = 1, // as of native-xpbd
     .create = create,

@@ -36,6 +36,7 @@ static ck_Status lay_beside(ck_Native *native, ck_Error *error) {
 
 static ck_Status lay_in_rows(ck_Native *native, const ck_ProjectionRule *rule, const ck_RowSprings *springs,
                              ck_Error *error) {
+    ck_ProjectedCloth *last = native->cloth;
     const ck_ProjectionSetup setup = {.loops = ck_native_loops(native),
                                       .model = native->model,
                                       .springs = springs,
@@ -44,18 +45,22 @@ static ck_Status lay_in_rows(ck_Native *native, const ck_ProjectionRule *rule, c
                                       .velocity = native->velocity,
                                       .before = native->other_velocity,
                                       .inverse_mass = native->inverse_mass,
-                                      .beside = native->beside};
-    return ck_projection_create(&native->cloth, &setup, error);
+                                      .beside = native->beside,
+                                      .last = last};
+    native->cloth = NULL;
+    const ck_Status status = ck_projection_create(&native->cloth, &setup, error);
+    ck_projection_destroy(last);
+    return status;
 }
 
 ck_Status ck_native_lay_out(ck_Native *native, const ck_ProjectionRule *rule, ck_Error *error) {
     ck_RowSprings springs;
     const ck_SweepRule sweeps = rule_of(native, rule->projection);
+    ck_Status status = native->contact ? lay_beside(native, error) : CK_OK;
+    if (!status && ck_projection_fits(native->model, &springs)) return lay_in_rows(native, rule, &springs, error);
     ck_projection_destroy(native->cloth);
     native->cloth = NULL;
-    ck_Status status = native->contact ? lay_beside(native, error) : CK_OK;
     if (status) return status;
-    if (ck_projection_fits(native->model, &springs)) return lay_in_rows(native, rule, &springs, error);
     if (!native->sweeps)
         return ck_sweep_list_create(&native->sweeps, ck_native_loops(native), native->model, &sweeps, error);
     ck_sweep_list_set(native->sweeps, native->model, &sweeps);

@@ -38,7 +38,8 @@ typedef struct Work {
     double spring, particle;
 } Work;
 
-// Engines and set-ups. What projects is given ten iterations; beside: the native engine whose updates are the measure.
+// Engines and set-ups. What projects is given ten iterations, but lines one; beside: the native engine whose updates
+// are the measure.
 typedef struct Candidate {
     const char *engine, *setup;
     ck_Settings settings;
@@ -433,7 +434,7 @@ static ck_Status add_section(ck_Csv *csv, Section section, ck_Error *error) {
 }
 
 static const char *const parts[] = {"steps", "seconds", "strain", "costs", "growth"};
-enum { STEPS, SECONDS, STRAIN_PART, COSTS, GROWTH, PARTS };
+enum { PART_STEPS, PART_SECONDS, PART_STRAIN, PART_COSTS, PART_GROWTH, PARTS };
 
 static ck_Status check_only(const char *only, ck_Error *error) {
     for (size_t i = 0; only && i < PARTS; i++)
@@ -454,16 +455,18 @@ ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *
     ck_bench_add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
     ck_Status status = check_only(options->only, error);
     for (size_t i = 0; i < BODIES && !status; i++)
-        status = add_section(csv, (Section){parts[STEPS], write_race, &bodies[i], NULL, options, peak}, error);
+        status = add_section(csv, (Section){parts[PART_STEPS], write_race, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < BODIES && !status; i++)
-        status = add_section(csv, (Section){parts[SECONDS], write_seconds, &bodies[i], NULL, options, peak}, error);
+        status =
+            add_section(csv, (Section){parts[PART_SECONDS], write_seconds, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < 2 && !status; i++)
         status =
-            add_section(csv, (Section){parts[STRAIN_PART], write_residuals, &bodies[i], NULL, options, peak}, error);
+            add_section(csv, (Section){parts[PART_STRAIN], write_residuals, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < CK_BENCH_CLOTHS && !status; i++)
         status = add_section(
-            csv, (Section){parts[COSTS], write_costs, &ck_bench_cloths[i].body, &ck_bench_cloths[i], options, peak},
+            csv,
+            (Section){parts[PART_COSTS], write_costs, &ck_bench_cloths[i].body, &ck_bench_cloths[i], options, peak},
             error);
     return status ? status
-                  : add_section(csv, (Section){parts[GROWTH], write_growth, &growing, NULL, options, peak}, error);
+                  : add_section(csv, (Section){parts[PART_GROWTH], write_growth, &growing, NULL, options, peak}, error);
 }

@@ -179,7 +179,8 @@ static void summarise_order(const ck_Precision *precision, const ck_JournalRow *
     // the error of a scene at rest is that of the rest: to move wrongly on the way to it costs nothing
     bool is_static = precision->comparison->truth.reference.is_static;
     bool is_damped = precision->comparison->model.terms & CK_TERM_DAMPING;
-    int theory = !is_static ? engine->order : is_damped ? engine->damped_rest_order : engine->rest_order;
+    const int moving = is_damped && engine->damped_order ? engine->damped_order : engine->order;
+    int theory = !is_static ? moving : is_damped ? engine->damped_rest_order : engine->rest_order;
     double order = fit_order(precision, rows, engine, &points), expected = theory > 0 ? theory : NAN;
     if (points < 3)
         snprintf(reason, sizeof reason, "only %d steps have an error between %.3g and %g", points,

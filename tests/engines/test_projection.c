@@ -129,7 +129,10 @@ static void compare_projection(const char *size, const char *springs, const char
         ck_projection_destroy(cloth);
     }
     double *pulls = calloc(count, sizeof *pulls);
-    for (uint32_t i = 0; i < substeps; i++) plain_substep(model, &rule, order, x, v, before, pulls);
+    for (uint32_t i = 0; i < substeps; i++) {
+        plain_substep(model, &rule, order, x, v, before, pulls);
+        for (size_t k = 0; k < count && i == 0; k++) pulls[k] *= 2; // all of the first one's, see line_kernel.c
+    }
     free(pulls);
     for (size_t i = count; i < 3 * count; i++) state[i] *= dt;
     fixture_compare_loops(text, results, state, 3 * count);

@@ -174,7 +174,10 @@ static End run_plain(const ck_Model *model, const char *engine, const ck_Setting
     if (plain.has_lines) turn_back(&plain);
     for (int frame = 0; frame < model->frame_count; frame++) {
         memset(plain.contact->impulse, 0, sizeof plain.contact->impulse);
-        for (uint32_t i = 0; i < settings->substeps; i++) plain_substep(&plain, settings->iterations);
+        for (uint32_t i = 0; i < settings->substeps; i++) {
+            plain_substep(&plain, settings->iterations);
+            for (size_t k = 0; k < count && frame == 0 && i == 0; k++) plain.pulls[k] *= 2; // as line_kernel.c says
+        }
     }
     memcpy(end.numbers, plain.x, count * sizeof *state);
     for (size_t i = 0; i < count; i++)

@@ -13,7 +13,7 @@ typedef struct ck_ProjectionKind {
     ck_Status (*touch)(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 } ck_ProjectionKind;
 
-// The first members of each kind's structure.
+// The first member of each kind's structure.
 typedef struct ck_ProjectionHead {
     const ck_ProjectionKind *kind;
     struct ck_RowContact *contact; // NULL: there is nothing to touch

@@ -254,7 +254,7 @@ static __attribute__((noinline)) void fly_row(const ck_ProjectedCloth *cloth, in
 static __attribute__((noinline)) void press_rows(const ck_ProjectedCloth *cloth, const ck_Visits *visits) {
     for (int i = 0; i < visits->count; i++)
         for (int k = 0; k < 2; k++)
-            if (visits->ends[i][k] >= 0) cloth->loops->row_press(cloth->contact, visits->ends[i][k]);
+            if (visits->ends[i][k] >= 0) cloth->loops->row_press(cloth->head.contact, visits->ends[i][k]);
 }
 
 CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {
@@ -268,7 +268,7 @@ CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last
 }
 
 CK_INLINE void begin_row(const ck_ProjectedCloth *cloth, const ck_ProjectedCloth *shared, int row, bool is_last) {
-    if (__builtin_expect(cloth->contact != NULL, 0))
+    if (__builtin_expect(cloth->head.contact != NULL, 0))
         fly_row(shared, row, is_last);
     else
         predict_row(cloth, row, is_last);
@@ -289,7 +289,7 @@ CK_INLINE void run_colours(const ck_ProjectedCloth *cloth, const ck_ProjectedClo
 #pragma GCC unroll 6
         for (int turn = 0; turn < COLOURS; turn++)
             project_colour(cloth, visits->at + first, together, colour_at(turn, terms), terms);
-    if (__builtin_expect(cloth->contact != NULL, 0)) press_rows(shared, visits);
+    if (__builtin_expect(cloth->head.contact != NULL, 0)) press_rows(shared, visits);
 }
 
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.

@@ -36,8 +36,7 @@ typedef struct ck_Stripe {
 typedef enum ck_Direction { CK_IS_DOWN, CK_IS_ALONG, CK_IS_ACROSS, CK_DIRECTIONS } ck_Direction;
 
 struct ck_ProjectedCloth {
-    const ck_ProjectionKind *kind; // as ck_ProjectionHead
-    struct ck_RowContact *contact;
+    ck_ProjectionHead head;
     const ck_Loops *loops;
     ck_Rows rows;
     ck_ProjectionRule rule;

@@ -28,7 +28,7 @@ CK_INLINE void store(const struct ck_LinedCloth *cloth, double *planes, long at,
 // As predict of line_loop.c; a way is carried·(x − from) + push, and what speed it had at its start stands half way
 // between that and keep·(x − from).
 CK_INLINE void fly(const struct ck_LinedCloth *cloth, const Group *at, bool is_last) {
-    const ck_RowContact *contact = cloth->contact;
+    const ck_RowContact *contact = cloth->head.contact;
     const ck_Lanes none = {0}, keep = ck_lanes_all(cloth->rule.keep);
     const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(contact->mass + at->single));
     const ck_Lanes3 x = load(cloth, cloth->x, at->plane),
@@ -49,7 +49,7 @@ CK_INLINE void fly(const struct ck_LinedCloth *cloth, const Group *at, bool is_l
 
 // One particle by itself, over the impacts on its way.
 static __attribute__((noinline)) void meet(const struct ck_LinedCloth *cloth, const Group *at, bool is_last) {
-    const ck_RowContact *contact = cloth->contact;
+    const ck_RowContact *contact = cloth->head.contact;
     const double dt = contact->touched.dt;
     double x[3], v[3], field[3], impulse[3] = {0, 0, 0};
     double *sum = contact->impulse + at->single / CK_STRIPE * 3 * CK_STRIPE + at->single % CK_STRIPE;
@@ -79,8 +79,8 @@ void CK_LOOP(ck_line_fly)(const struct ck_LinedCloth *cloth, int row, bool is_la
             const Group group = group_at(cloth, row, column + lane);
             fly(cloth, &group, is_last);
         }
-        ck_row_contact_begin(cloth->contact, eight);
-        for (unsigned bits = cloth->loops->row_meets(cloth->contact, eight); bits; bits &= bits - 1) {
+        ck_row_contact_begin(cloth->head.contact, eight);
+        for (unsigned bits = cloth->loops->row_meets(cloth->head.contact, eight); bits; bits &= bits - 1) {
             const Group alone = group_at(cloth, row, column + __builtin_ctz(bits));
             meet(cloth, &alone, is_last);
         }
@@ -89,7 +89,7 @@ void CK_LOOP(ck_line_fly)(const struct ck_LinedCloth *cloth, int row, bool is_la
 
 // What surfaces push is no pull of springs: where the flight ended is pushed as far.
 CK_INLINE void give(const struct ck_LinedCloth *cloth, const Group *at) {
-    const ck_Lanes3 x = ck_lanes3_load(cloth->contact->x + at->tile),
+    const ck_Lanes3 x = ck_lanes3_load(cloth->head.contact->x + at->tile),
                     pushed = ck_lanes3_subtract(x, load(cloth, cloth->x, at->plane));
     store(cloth, cloth->x, at->plane, x);
     store(cloth, cloth->flown, at->plane, ck_lanes3_add(load(cloth, cloth->flown, at->plane), pushed));
@@ -102,9 +102,9 @@ void CK_LOOP(ck_line_press)(const struct ck_LinedCloth *cloth) {
             Group groups[CK_STRIPE / CK_LANES];
             for (int i = 0; i < CK_STRIPE / CK_LANES; i++) {
                 groups[i] = group_at(cloth, row, column + (long)i * CK_LANES);
-                ck_lanes3_store(cloth->contact->x + groups[i].tile, load(cloth, cloth->x, groups[i].plane));
+                ck_lanes3_store(cloth->head.contact->x + groups[i].tile, load(cloth, cloth->x, groups[i].plane));
             }
-            if (!cloth->loops->row_press(cloth->contact, (int)(groups[0].single / CK_STRIPE))) continue;
+            if (!cloth->loops->row_press(cloth->head.contact, (int)(groups[0].single / CK_STRIPE))) continue;
             for (int i = 0; i < CK_STRIPE / CK_LANES; i++) give(cloth, &groups[i]);
         }
 }

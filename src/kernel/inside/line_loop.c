@@ -271,13 +271,13 @@ CK_INLINE void predict(const struct ck_LinedCloth *cloth, int row, bool is_last)
 }
 
 CK_INLINE void begin_row(const struct ck_LinedCloth *cloth, const struct ck_LinedCloth *shared, int row, bool is_last) {
-    if (!cloth->contact)
+    if (!cloth->head.contact)
         predict(cloth, row, is_last);
     else if (row < cloth->rows)
         cloth->loops->line_fly(shared, row, is_last);
 }
 
-// Along rows as soon as they have flown. What is shared is what leaves this file.
+// Along rows as soon as they have flown. Other files get what is shared: the copy's address does not leave this one.
 CK_INLINE void sweep(const struct ck_LinedCloth *cloth, const struct ck_LinedCloth *shared, bool begins, bool is_last,
                      const int terms) {
     for (int row = 0; row < cloth->rows; row += CK_LANES) {
@@ -289,7 +289,7 @@ CK_INLINE void sweep(const struct ck_LinedCloth *cloth, const struct ck_LinedClo
         solve_down(cloth, CK_LINES_DOWN_LEFT, -1, terms);
     }
     solve_down(cloth, CK_LINES_DOWN, 0, terms);
-    if (cloth->contact) cloth->loops->line_press(shared);
+    if (cloth->head.contact) cloth->loops->line_press(shared);
 }
 
 static void forget_multipliers(const struct ck_LinedCloth *cloth) {

@@ -23,16 +23,16 @@ typedef enum ck_LineKind {
 
 // Particles row by row, each coordinate in a plane of its own.
 struct ck_LinedCloth {
-    const ck_ProjectionKind *kind; // as ck_ProjectionHead
-    struct ck_RowContact *contact; // of the rows with what is beside them, eight places a row of its own
-    ck_Follower follower;          // which knows particles, as contact knows places
+    ck_ProjectionHead head; // its contact of the rows with what is beside them, eight places a row of its own
+    ck_Follower follower;   // which knows particles, as contact knows places
     const ck_Loops *loops;
     ck_ProjectionRule rule;
     double carried, push[3]; // as in constraint_loop.h
     int terms, rows, columns;
     long stride, plane;                    // doubles from a row to the next, and from a coordinate to the next
     double *x, *start;                     // planes, m, from the first particle on; start: before the last substep
-    double *flown;                         // planes, m: where the last substep's flight ended
+    double *flown;                         // planes, m: where the last substep's flight ended, and surfaces pushed that
+    bool *is_fresh;                        // [rows*columns] has just begun to move; NULL: none has
     double *before;                        // planes: m moved in the substep before the last one
     double *weight;                        // 1/kg; 0 where pinned, and beside
     double *there;                         // [columns] 1, and 0 beside

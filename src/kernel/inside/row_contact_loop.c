@@ -91,7 +91,7 @@ CK_INLINE unsigned may_hit_any(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 w
 //   mean, gain  [3] m: its mean speed times dt, and the field times dt²
 static __attribute__((noinline)) void meet(const ck_ProjectedCloth *cloth, const Group *group, int k,
                                            const double *mean, const double *gain, bool is_last) {
-    const ck_RowContact *contact = cloth->contact;
+    const ck_RowContact *contact = cloth->head.contact;
     const double dt = contact->touched.dt;
     const long tile = group->at.tile + k;
     double x[3], v[3], field[3], from[3], before[3], impulse[3] = {0, 0, 0};
@@ -127,7 +127,7 @@ CK_INLINE void fly(const ck_ProjectedCloth *cloth, const Group *group, bool is_l
     ck_lanes3_store(cloth->from + at.tile, x);
     ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(x, free, way));
     if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
-    unsigned bits = may_hit_any(&cloth->contact->touched, x, first, gain) & free_bits(cloth->contact, group);
+    unsigned bits = may_hit_any(&cloth->head.contact->touched, x, first, gain) & free_bits(cloth->head.contact, group);
     if (__builtin_expect(!bits, 1)) return;
     double ways[3 * CK_STRIPE], gains[3 * CK_STRIPE];
     ck_lanes3_store(ways, way);
@@ -144,7 +144,7 @@ CK_INLINE void fly(const ck_ProjectedCloth *cloth, const Group *group, bool is_l
 ck_RowFly CK_LOOP(ck_row_fly);
 void CK_LOOP(ck_row_fly)(const ck_ProjectedCloth *cloth, int row, bool is_last) {
     const ck_Rows *rows = &cloth->rows;
-    ck_row_contact_begin(cloth->contact, row);
+    ck_row_contact_begin(cloth->head.contact, row);
     for (int i = 0; i < rows->span; i++)
         for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
             const Group group = group_at(rows, row, i, lane);

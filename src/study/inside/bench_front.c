@@ -116,12 +116,12 @@ static void take(ck_BenchCost *costs, const ck_Settings *settings, double error,
 }
 
 // Between the cheapest and the number tried before it.
-static void refine(const ck_BenchFront *front, const ck_Engine *engine, double budget, ck_BenchCost *costs,
-                   int target) {
+static void refine(const ck_BenchFront *front, const ck_Engine *engine, double budget, const ck_BenchCost *found,
+                   ck_BenchCost *costs) {
     char why[200];
     double seconds;
-    ck_Settings wanted = costs[target].settings;
-    if (isnan(costs[target].seconds)) return;
+    ck_Settings wanted = found->settings;
+    if (isnan(found->seconds)) return;
     wanted.substeps = is_power(wanted.substeps) ? wanted.substeps / 8 * 7 : wanted.substeps / 6 * 5;
     if (!wanted.substeps) return;
     const double error = ck_bench_front_run(front, engine, &wanted, budget, &seconds, why);
@@ -145,6 +145,11 @@ void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, 
             take(costs, &wanted, error, seconds);
         }
     }
-    for (int i = 0; i < CK_BENCH_TARGETS && !*reason; i++) refine(front, engine, budget, costs, i);
+    ck_BenchCost found[CK_BENCH_TARGETS];
+    memcpy(found, costs, sizeof found);
+    for (int i = 0; i < CK_BENCH_TARGETS && !*reason; i++)
+        if (!i || found[i].settings.substeps != found[i - 1].settings.substeps ||
+            found[i].settings.iterations != found[i - 1].settings.iterations)
+            refine(front, engine, budget, &found[i], costs);
     if (!*reason && isnan(costs[0].seconds)) snprintf(reason, 200, "no settings within %g s a run get there", budget);
 }

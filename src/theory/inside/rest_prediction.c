@@ -22,7 +22,7 @@ typedef struct Substep {
     double dt, eased;        // s; what drag leaves of the field's push
     double found;            // the share of a place's pulls that a substep finds anew: the rest it begins with
     double *line;            // [5*springs] what solving lines needs
-    double *tension;         // [springs] N, in that order: what all sweeps have corrected by, / dt²
+    double *tension;         // [springs] N, in that order: what all sweeps have corrected by, / (found·dt²)
 } Substep;
 
 // XPBD's Δλ of one sweep; a bar has no compliance and no damping.
@@ -208,7 +208,7 @@ static const ck_Spring **springs_in_order(const ck_Model *model, const ck_Engine
 static void find_force(const Substep *step, const double *position, const double *after, double *force) {
     const ck_Model *model = step->model;
     for (int i = 0; i < 3 * model->particle_count; i++)
-        force[i] = (after[i] - position[i]) * model->mass[i / 3] / (step->dt * step->dt);
+        force[i] = (after[i] - position[i]) * model->mass[i / 3] / (step->found * step->dt * step->dt);
 }
 
 static double longest(const double *moved, int particles) {
