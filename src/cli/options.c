@@ -1,4 +1,5 @@
 #include "asked_engines.h"
+#include "asked_settings.h"
 #include "command.h"
 #include "picture_options.h"
 
@@ -28,7 +29,6 @@ typedef struct Option {
     bool is_way; // it says how to come to the answer, not what is asked
 } Option;
 
-static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_full(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_memory(ck_Arguments *arguments, const char *text, ck_Error *error);
 static ck_Status set_seed(ck_Arguments *arguments, const char *text, ck_Error *error);
@@ -50,7 +50,7 @@ static const Option table[] = {
          "only this engine, or those of a pattern as 'bullet-*', or one of your own: a command as 'mine=./adapter "
          "--fast', or a library as ./libmine.so; or one under a second name, for other settings: 'fine=native-xpbd'; "
          "may be given several times"},
-    {"set", "[ENGINE.]KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = add_override,
+    {"set", "[ENGINE.]KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = ck_arguments_add_setting,
      .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
     {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,
      .help = "threads a step, where an engine can share one: regular cloths, and any springs of native-verlet"},
@@ -229,43 +229,6 @@ static ck_Status read_count(double *number, const char *text, double low, double
     return ck_fail(error, CK_BAD_INPUT, "%s %s: it must be a whole number from %g to %.16g", option, text, low, high);
 }
 
-static ck_Status fail_unknown_key(const char *text, const char *key, const ck_Engine *engine, ck_Error *error) {
-    char known[200], hint[80];
-    return ck_fail(error, CK_BAD_INPUT, "--set %s: %s has no %s%s; it has %s", text, engine->name, key,
-                   ck_name_hint(hint, sizeof hint, key, ck_setting_name, engine->settings),
-                   engine->settings ? ck_name_list(known, sizeof known, ck_setting_name, engine->settings)
-                                    : "no settings");
-}
-
-static ck_Status add_override(ck_Arguments *arguments, const char *text, ck_Error *error) {
-    char name[64], key[32], wanted[100], *end;
-    int used = 0;
-    ck_CompareOptions *options = &arguments->options;
-    // the engine goes without saying where one is asked for
-    if (options->engines == arguments->engines && options->engine_count == 1 &&
-        sscanf(text, "%31[^.=]=%n", key, &used) == 1 && used)
-        snprintf(name, sizeof name, "%s", arguments->engines[0]->name);
-    else if (sscanf(text, "%63[^.=].%31[^.=]=%n", name, key, &used) != 2 || !used)
-        return ck_fail(error, CK_BAD_INPUT,
-                       "--set %s: it must read ENGINE.KEY=NUMBER, as in ode-quick.substeps=16, or KEY=NUMBER after one "
-                       "--engine",
-                       text);
-    if (options->override_count == sizeof arguments->overrides / sizeof *arguments->overrides)
-        return ck_fail(error, CK_BAD_INPUT, "--set is given more than %d times", options->override_count);
-    ck_Override *override = &arguments->overrides[options->override_count++];
-    *override = (ck_Override){.engine = ck_engine_find(name)};
-    if (!override->engine) return ck_engine_unknown(name, error);
-    const ck_Setting *setting = ck_setting_find(override->engine->settings, key);
-    if (!setting) return fail_unknown_key(text, key, override->engine, error);
-    double number = strtod(text + used, &end);
-    bool is_taken = ck_setting_takes(setting, number, wanted, sizeof wanted);
-    // a scene may leave a setting to the rule by 0; here that would leave the scene's
-    if (end == text + used || *end || !is_taken || (number == 0 && setting->least > 0))
-        return ck_fail(error, CK_BAD_INPUT, "--set %s.%s = %s: it must be %s", name, key, text + used, wanted);
-    ck_settings_set(&override->settings, setting->slot, number);
-    return CK_OK;
-}
-
 // As --set ENGINE.threads=N of every engine that can share its steps.
 static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error *error) {
     double number;
@@ -274,7 +237,7 @@ static ck_Status set_threads(ck_Arguments *arguments, const char *text, ck_Error
     for (int i = 0; i < ck_engine_count() && !status; i++) {
         if (!ck_engine_setting(ck_engine_at(i), CK_THREADS)) continue;
         snprintf(set, sizeof set, "%s.threads=%g", ck_engine_at(i)->name, number);
-        status = add_override(arguments, set, error);
+        status = ck_arguments_add_setting(arguments, set, error);
     }
     return status;
 }
