@@ -86,8 +86,8 @@ typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const st
 // A row's flight to the start of a substep's sweeps, and what surfaces push it by in a sweep; see row_contact_loop.c.
 typedef void ck_RowFly(const struct ck_ProjectedCloth *cloth, int row, bool is_last);
 typedef bool ck_RowPress(const struct ck_RowContact *contact, int row); // true where anything was
-// Beside a list: a bit for each of a row of eight that may meet a surface on its way, from x at a speed way/dt under a
-// field gain/dt²; the others do not.
+// Beside a list, and of lines: a bit for each of a row of eight that may meet a surface on its way, from x at a speed
+// way/dt under a field gain/dt²; the others do not.
 typedef unsigned ck_RowMeets(const struct ck_RowContact *contact, int row);
 // A substep of lines; see line_loop.h.
 typedef void ck_LineSubstep(const struct ck_LinedCloth *cloth, bool is_last);

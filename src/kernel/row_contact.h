@@ -1,5 +1,5 @@
 // Contact of particles in rows, for methods that correct positions: a projected cloth's rows, or any body's particles
-// in rows of eight beside its list of springs.
+// in rows of eight beside its list of springs, or beside its lines.
 //
 // A sweep pushes out of a surface whatever is inside of it, and takes from its way what friction holds: in all sweeps
 // of a substep at most μ times what it was pushed out in all. Impacts are what the follower makes of them.
@@ -18,7 +18,7 @@ typedef struct ck_RowContact {
     ck_Follower follower;
     double *x;          // tiles, m: where all is; a projected cloth's own
     double *from;       // tiles, m: where a substep's way is measured from: its start, but for impacts
-    double *way, *gain; // tiles, m, beside a list: speed at the start times dt, field times dt²
+    double *way, *gain; // tiles, m, in rows of eight: speed at the start times dt, field times dt²
     double *held;       // tiles, m: what friction has taken of the way
     double *depth;      // m: how far each was pushed out
     double *mass;       // kg, 0 where it is not free
@@ -27,8 +27,8 @@ typedef struct ck_RowContact {
     double *state;
 } ck_RowContact;
 
-// Beside a list of so many particles, in its order; mass, [n], is then set by the caller. Surfaces are copied. Errors:
-// CK_NO_MEMORY. Free with ck_row_contact_destroy.
+// Beside a list or lines of so many particles, in its order; mass, [n], is then set by the caller. Surfaces are copied.
+// Errors: CK_NO_MEMORY. Free with ck_row_contact_destroy.
 ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Touched *touched, const ck_Follower *follower,
                                 int particles, ck_Error *error);
 // The same of a projected cloth, with the masses there; its places are then set by the caller.

@@ -6,6 +6,7 @@
 #include "csv_child.h"
 #include "engines.h"
 #include "loops.h"
+#include "names.h"
 #include "process.h"
 #include "springs.h"
 #include "statistics.h"
@@ -436,24 +437,35 @@ static ck_Status add_section(ck_Csv *csv, Section section, ck_Error *error) {
 static const char *const parts[] = {"steps", "seconds", "strain", "costs", "growth"};
 enum { PART_STEPS, PART_SECONDS, PART_STRAIN, PART_COSTS, PART_GROWTH, PARTS };
 
+// Names of parts, then of bodies, of which several in a row have the same.
+static const char *only_at(const void *table, int index) {
+    (void)table;
+    if (index < PARTS) return parts[index];
+    index -= PARTS;
+    for (size_t i = 0; i < BODIES; i++) {
+        const bool is_new = !i || strcmp(bodies[i].name, bodies[i - 1].name);
+        if (is_new && index-- == 0) return bodies[i].name;
+    }
+    return NULL;
+}
+
 static ck_Status check_only(const char *only, ck_Error *error) {
-    for (size_t i = 0; only && i < PARTS; i++)
-        if (!strcmp(only, parts[i])) return CK_OK;
-    for (size_t i = 0; only && i < BODIES; i++)
-        if (!strcmp(only, bodies[i].name)) return CK_OK;
+    char known[200], hint[80];
+    for (int i = 0; only && only_at(NULL, i); i++)
+        if (!strcmp(only, only_at(NULL, i))) return CK_OK;
     if (!only) return CK_OK;
-    return ck_fail(error, CK_BAD_INPUT,
-                   "--only %s: there are the parts steps, seconds, strain, costs and growth, and the bodies cloth, "
-                   "rope, ropes, mesh and on_ball",
-                   only);
+    return ck_fail(error, CK_BAD_INPUT, "--only %s: there is no such part or body%s; there are %s", only,
+                   ck_name_hint(hint, sizeof hint, only, only_at, NULL),
+                   ck_name_list(known, sizeof known, only_at, NULL));
 }
 
 ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
+    ck_Status status = check_only(options->only, error);
+    if (status) return status;
     const double peak = find_peak(), each[3] = {peak, peak, peak};
     const ck_BenchBody growing = {"growing cloth", CK_BENCH_CLOTH, 1, 1};
     ck_Model none = {0};
     ck_bench_add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
-    ck_Status status = check_only(options->only, error);
     for (size_t i = 0; i < BODIES && !status; i++)
         status = add_section(csv, (Section){parts[PART_STEPS], write_race, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < BODIES && !status; i++)

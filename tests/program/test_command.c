@@ -21,7 +21,7 @@ static void test_usage(void **state) {
         {"--version", 0, "clothcheck 0."},
         {"bench --help", 0, "bench.csv"},
         {"bench --rounds 0", 2, "must be a whole number from 1 to 99"},
-        {"bench --only nothing", 2, "--only nothing: there are the parts steps,"},
+        {"bench --only cots", 2, "--only cots: there is no such part or body; did you mean costs?; there are steps,"},
         {"bench --fast", 2, "--fast: no such option; 'clothcheck bench --help' tells"},
         {"claims --help", 0, "claims.csv"},
         {"claims rope", 2, "rope: claims takes no SCENE"},
