@@ -2,6 +2,7 @@
 
 #include "contact_metric.h"
 #include "force_metric.h"
+#include "path.h"
 #include "springs.h"
 #include "swing_metric.h"
 #include "vector.h"
@@ -96,6 +97,12 @@ static double position_rms_between(const ck_Model *model, const ck_Trajectory *o
 static double energy_drift_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
     (void)reference;
     return ck_energy_drift(model, trajectory);
+}
+
+// Of a body that nothing else works on.
+static double motion_gain_over(const ck_Model *model, const ck_Trajectory *trajectory, const ck_Reference *reference) {
+    (void)reference;
+    return ck_model_is_worked_on(model) || model->segment_count ? NAN : ck_energy_motion_gain(model, trajectory);
 }
 
 // True where nothing from outside acts: momentum stays.
@@ -273,6 +280,8 @@ static const ck_Metric metrics[] = {
      .over = position_rms_over, .between = position_rms_between, .to_horizon = true},
     {"energy_drift", "1", "Energy gained, or lost beyond the scene's own damping / what it turns over", CK_TRUTH_ZERO,
      .over = energy_drift_over},
+    {"motion_gain", "1", "Energy of motion and height beyond all that there was / what it turns over", CK_TRUTH_ZERO,
+     .over = motion_gain_over},
     {"momentum_drift", "1", "Largest change of momentum, of a body that nothing acts on / its particles'",
      CK_TRUTH_ZERO, .over = momentum_drift_over},
     {"angular_momentum_drift", "1",

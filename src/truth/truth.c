@@ -34,13 +34,16 @@
 static const ck_TruthForm forms[] = {
     {"equilibrium", "equilibrium", "energy minimum by Newton with sparse Cholesky; spread over nudged starts", true,
      .terms = CK_TERM_WIND | CK_TERM_PULL_ONLY | CK_TERM_COLLIDERS | CK_TERM_BODIES,
-     .check = ck_truth_equilibrium_check, .solve = ck_truth_solve_equilibrium},
+     .check = ck_truth_equilibrium_check, .solve = ck_truth_solve_equilibrium,
+     .leaves_open = ck_truth_equilibrium_leaves_open},
     {"trajectory", "trajectory",
      "classical Runge-Kutta (Kutta 1901), bars as constraints, step halved until two runs agree to 1e-9", false,
-     .terms = INTEGRATED, .is_chaotic = true, .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory},
+     .terms = INTEGRATED, .is_chaotic = true, .check = ck_truth_trajectory_check, .solve = ck_truth_solve_trajectory,
+     .work = ck_truth_trajectory_work},
     {"converged", "trajectory",
      "the same of a scene in contact: impacts, slip and stick located in time, Coulomb friction", false,
-     .terms = INTEGRATED, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory},
+     .terms = INTEGRATED, .is_chaotic = true, .check = ck_truth_converged_check, .solve = ck_truth_solve_trajectory,
+     .work = ck_truth_trajectory_work},
     {"rest", "invariants", "at rest, whatever the shape: nothing moves or penetrates, colliders carry what pins do not",
      true,
      .terms = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_PULL_ONLY | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS |
@@ -135,6 +138,8 @@ ck_Status ck_truth_check(const ck_Model *model, ck_Error *error) {
 
 // What a reference may cost beside a closed form: some seconds.
 #define MOST_WORK 1e8
+// Of a spring or particle that is evaluated once.
+#define SECONDS_OF_WORK 5e-9
 
 // A linear theory has an amplitude: where the scene can be integrated, the difference to that says how far it is off.
 static ck_Status add_reference(ck_Truth *truth, const ck_Model *model, ck_Error *error) {
@@ -217,6 +222,15 @@ static void answer_in_child(void *context) {
     if (fflush(question->file)) answer->status = ck_fail(&answer->why, CK_IO, "%s", strerror(errno));
 }
 
+// What cannot end in time is told before it begins.
+static ck_Status check_work(const ck_Truth *truth, const ck_Model *model, const ck_Limits *limits, ck_Error *error) {
+    const double seconds = truth->form->work ? SECONDS_OF_WORK * truth->form->work(model) : 0;
+    return seconds <= limits->seconds
+               ? CK_OK
+               : ck_fail(error, CK_REFUSED, "%s: its truth would take more than %.3g s; --time-limit is %g s",
+                         model->name, seconds, limits->seconds);
+}
+
 // In a child, as no work of ours knows how long it takes. CK_REFUSED, too, where it passes a limit.
 static ck_Status solve_within(ck_Truth *truth, const ck_Model *model, const ck_Limits *limits, ck_Error *error) {
     const int memory = memfd_create("truth", MFD_CLOEXEC);
@@ -245,7 +259,8 @@ static ck_Status solve(ck_Truth *truth, const ck_Model *model, const char *cache
                        ck_Error *error) {
     if (cache && ck_truth_cache_load(truth, model, cache)) return CK_OK;
     ck_Error why = {0};
-    ck_Status status = limits ? solve_within(truth, model, limits, &why) : truth->form->solve(truth, model, &why);
+    ck_Status status = limits ? check_work(truth, model, limits, &why) : CK_OK;
+    if (!status) status = limits ? solve_within(truth, model, limits, &why) : truth->form->solve(truth, model, &why);
     if (status == CK_REFUSED) {
         snprintf(truth->kind, sizeof truth->kind, "none: %.*s", (int)sizeof truth->kind - 8, why.message);
         for (int i = 0; i < truth->path_count; i++) ck_trajectory_free(&truth->paths[i]);
@@ -275,7 +290,8 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     if (status || !model->truth) return status;
     truth->form = ck_truth_form_find(model->truth);
     truth->reference.is_static = truth->form->is_static;
-    snprintf(truth->kind, sizeof truth->kind, "%s", truth->form->kind);
+    const char *open = truth->form->leaves_open ? truth->form->leaves_open(model) : NULL;
+    snprintf(truth->kind, sizeof truth->kind, "%s%s%s", truth->form->kind, open ? ", " : "", open ? open : "");
     truth->reference.is_invariant = !truth->form->at && !truth->form->solve;
     if (truth->reference.is_invariant) return CK_OK;
     status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, limits, error);

@@ -36,6 +36,11 @@ typedef struct ck_TruthForm {
     // Fills paths, path_count and the reference's horizon. Errors: CK_REFUSED where there is no such truth,
     // CK_NO_MEMORY.
     ck_Status (*solve)(struct ck_Truth *truth, const ck_Model *model, ck_Error *error);
+    // How many springs and particles it evaluates at least, some 5 ns each: what would take longer than may be waited
+    // is not begun.
+    double (*work)(const ck_Model *model);
+    // What a reader must know of it for such a model. NULL, of either: nothing.
+    const char *(*leaves_open)(const ck_Model *model);
 } ck_TruthForm;
 
 #define CK_TRUTH_MAX_PATHS 8

@@ -15,6 +15,7 @@
 // A body on its way to rest; arrays [3*n].
 typedef struct Fall {
     const ck_Model *model;
+    uint32_t substeps; // a frame
     double dt;
     double *position, *velocity, *acceleration, *predicted;
     const ck_Touching *touching; // what is inside of a surface is pushed out by springs; NULL: nothing can be
@@ -44,15 +45,27 @@ static void fall_by_a_step(const Fall *fall) {
     for (int i = 0; i < 3 * fall->model->particle_count; i++) fall->velocity[i] += 0.5 * dt * fall->acceleration[i];
 }
 
+// Of the stiffest motion's frequency, the fastest rate of spring damping on the way to rest. More would only take more
+// steps, without a bound: at this a step is an eighth of an undamped one.
+#define MOST_DAMPING 4
+
+// A copy of the springs whose dampers are as strong as they are worth stepping; NULL without memory.
+static ck_Spring *damped_springs(const ck_Model *model, double frequency) {
+    ck_Spring *springs = malloc(((size_t)model->spring_count + 1) * sizeof *springs);
+    if (!springs) return NULL;
+    const double share = fmin(1, MOST_DAMPING / (frequency * ck_stability_damping_time(model)));
+    for (int i = 0; i < model->spring_count; i++) {
+        springs[i] = model->springs[i];
+        springs[i].damping *= share;
+    }
+    return springs;
+}
+
 // Half of the step at which the stiffest motion grows, and a quarter of the time in which drag takes a speed.
-static ck_Status choose_step(const ck_Model *model, uint32_t *substeps) {
-    double frequency;
-    ck_Status status = ck_stability_frequency(model, &frequency);
-    if (status) return status;
+static uint32_t choose_step(const ck_Model *model, double frequency) {
     double damping = frequency * frequency * ck_stability_damping_time(model) + model->drag;
     double limit = fmin(ck_stability_drag_time(model, 0.25), 0.5 * ck_stability_verlet_limit(frequency, damping));
-    *substeps = ck_stability_substeps(model, limit);
-    return CK_OK;
+    return ck_stability_substeps(model, limit);
 }
 
 // The speed of the fastest particle, m/s; NaN where any has left the finite numbers.
@@ -66,43 +79,66 @@ static double fastest(const Fall *fall) {
     return isfinite(sum) ? largest : NAN;
 }
 
-ck_Status ck_settle(const ck_Model *model, double nudge, uint64_t seed, double stiffness, double *position,
-                    ck_Error *error) {
-    size_t count = 3 * (size_t)model->particle_count;
-    double *memory = malloc(3 * count * sizeof *memory);
-    ck_Model moved = *model;
-    // without damping it would swing for ever: then the drag that is critical for a pendulum of its size
-    if (moved.drag == 0 && !(moved.terms & CK_TERM_DAMPING))
-        moved.drag = 2 * sqrt(ck_stability_load(model) / ck_model_free_mass(model) / model->size);
-    uint32_t substeps;
-    if (!memory || choose_step(&moved, &substeps)) {
-        free(memory);
-        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
-    }
-    ck_Touching *touching;
-    const double origin[3] = {0, 0, 0};
-    if (ck_touching_create(&touching, model, origin, stiffness)) {
-        free(memory);
-        return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
-    }
-    const Fall fall = {&moved, model->step / substeps, position, memory, memory + count, memory + 2 * count, touching};
-    memcpy(position, model->position, count * sizeof *position);
-    memcpy(fall.velocity, model->velocity, count * sizeof *memory);
+// Memory of a fall; false where there is none.
+//   moved  of which springs become a copy
+static bool make_room(Fall *fall, ck_Model *moved, double *position) {
+    const size_t count = 3 * (size_t)moved->particle_count;
+    double frequency, *memory = malloc(3 * count * sizeof *memory);
+    const bool is_known = !ck_stability_frequency(moved, &frequency);
+    moved->springs = is_known ? damped_springs(moved, frequency) : NULL;
+    *fall = (Fall){.model = moved, .position = position, .velocity = memory};
+    if (!memory || !moved->springs) return false;
+    fall->acceleration = memory + count;
+    fall->predicted = memory + 2 * count;
+    fall->substeps = choose_step(moved, frequency);
+    fall->dt = moved->step / fall->substeps;
+    return true;
+}
+
+static void start_falling(const Fall *fall, double nudge, uint64_t seed) {
+    const ck_Model *model = fall->model;
+    const size_t count = 3 * (size_t)model->particle_count;
+    memcpy(fall->position, model->position, count * sizeof *fall->position);
+    memcpy(fall->velocity, model->velocity, count * sizeof *fall->velocity);
     ck_Random random = ck_random_seed(seed);
     for (size_t i = 0; i < count; i++) {
         double offset = nudge * (2 * ck_random_unit(&random) - 1);
-        if (!model->pinned[i / 3]) position[i] += offset;
+        if (!model->pinned[i / 3]) fall->position[i] += offset;
     }
-    accelerate(&fall, fall.velocity);
+    accelerate(fall, fall->velocity);
+}
+
+static ck_Status go_on_until_still(const Fall *fall, ck_Error *error) {
+    const ck_Model *model = fall->model;
+    const double still = ck_metric_still_speed(model);
+    double speed = INFINITY;
     ck_Status status = CK_OK;
-    double still = ck_metric_still_speed(model), speed = INFINITY;
     for (int frame = 0; frame < model->frame_count && !(frame > 10 && speed < still) && !status; frame++) {
-        for (uint32_t i = 0; i < substeps && !ck_child_interrupted; i++) fall_by_a_step(&fall);
-        speed = fastest(&fall);
+        for (uint32_t i = 0; i < fall->substeps && !ck_child_interrupted; i++) fall_by_a_step(fall);
+        speed = fastest(fall);
         status = speed >= 0 ? ck_child_check(error)
                             : ck_fail(error, CK_REFUSED, "%s: diverges on the way to its equilibrium", model->name);
     }
+    return status;
+}
+
+ck_Status ck_settle(const ck_Model *model, double nudge, uint64_t seed, double stiffness, double *position,
+                    ck_Error *error) {
+    ck_Model moved = *model;
+    ck_Touching *touching = NULL;
+    const double origin[3] = {0, 0, 0};
+    Fall fall = {0};
+    ck_Status status = CK_OK;
+    // without damping it would swing for ever: then the drag that is critical for a pendulum of its size
+    if (moved.drag == 0 && !(moved.terms & CK_TERM_DAMPING))
+        moved.drag = 2 * sqrt(ck_stability_load(model) / ck_model_free_mass(model) / model->size);
+    if (!make_room(&fall, &moved, position) || ck_touching_create(&touching, model, origin, stiffness))
+        status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    fall.touching = touching;
+    if (!status) start_falling(&fall, nudge, seed);
+    if (!status) status = go_on_until_still(&fall, error);
     ck_touching_free(touching);
-    free(memory);
+    free(fall.velocity);
+    free(moved.springs);
     return status;
 }
