@@ -20,9 +20,9 @@ void ck_projection_destroy(ck_ProjectedCloth *cloth) {
 }
 
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
-    const ck_ProjectionKind *kind = setup->rule->projection == CK_PROJECT_LINES ? &ck_projection_lines
-                                    : setup->loops->is_single                   ? &ck_projection_rows_single
-                                                                                : &ck_projection_rows;
+    static const ck_ProjectionKind *const kinds[2][2] = {{&ck_projection_rows, &ck_projection_rows_single},
+                                                         {&ck_projection_lines, &ck_projection_lines_single}};
+    const ck_ProjectionKind *kind = kinds[setup->rule->projection == CK_PROJECT_LINES][setup->loops->is_single];
     ck_Status status = kind->create(cloth, setup, error);
     if (status || !setup->beside || !kind->touch) return status;
     status = kind->touch(*cloth, setup, error);

@@ -1,13 +1,15 @@
-// Compliant springs of a regular cloth, whole lines at a time; see constraint_kernel.h.
+// Compliant springs of a regular cloth, whole lines at a time; see constraint_kernel.h. Compiled for either precision;
+// see single.h.
 #include "line_loop.h"
 #include "row_contact.h"
+#include "vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 // A softness is at least this share of 1/m, or rounding could make a pivot 0.
-#define ROUNDING 1e-12
+#define ROUNDING (CK_IS_SINGLE ? 1e-6 : 1e-12)
 
 static struct ck_LinedCloth *of(const ck_ProjectedCloth *cloth) {
     return (struct ck_LinedCloth *)cloth;
@@ -33,6 +35,19 @@ static void end_start(struct ck_LinedCloth *lined) {
     lined->is_fresh = NULL;
 }
 
+// The origin follows a cloth that has gone farther than it is wide.
+static void follow(struct ck_LinedCloth *lined) {
+    const ck_Real shift[] = {lined->x[0], lined->x[lined->plane], lined->x[2 * lined->plane]};
+    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > lined->size)) return;
+    for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
+        const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
+        lined->x[at] -= shift[i % 3];
+        lined->start[at] -= shift[i % 3];
+        lined->flown[at] -= shift[i % 3];
+    }
+    for (int axis = 0; axis < 3; axis++) lined->origin[axis] += shift[axis];
+}
+
 static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     struct ck_LinedCloth *lined = of(cloth);
     (void)waves; // one thread alone
@@ -40,6 +55,7 @@ static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
         lined->loops->line_substep(lined, i + 1 == substeps);
         if (lined->is_fresh) end_start(lined);
     }
+    if (CK_IS_SINGLE) follow(lined);
 }
 
 // A particle's number among places in rows of eight.
@@ -57,8 +73,9 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
     const double rate = lined->rule.keep / lined->rule.dt;
     for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
         const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
-        position[i] = lined->x[at];
+        position[i] = lined->x[at] + lined->origin[i % 3];
         velocity[i] = rate * (lined->x[at] - (lined->head.contact ? *from_at(lined, i / 3, i % 3) : lined->start[at]));
+        if (CK_IS_SINGLE) velocity[i] += rate * lined->lost[at];
         before[i] = rate * lined->before[at];
     }
 }
@@ -69,8 +86,8 @@ static void destroy(ck_ProjectedCloth *cloth) {
     free(cloth);
 }
 
-static double *take(double **next, long size) {
-    double *taken = *next + CK_MARGIN;
+static ck_Real *take(ck_Real **next, long size) {
+    ck_Real *taken = *next + CK_MARGIN;
     *next += size + CK_MARGIN;
     return taken;
 }
@@ -88,18 +105,19 @@ static bool allocate(struct ck_LinedCloth *lined) {
     const long columns = padded(lined->columns), tiles = 3 * CK_STRIPE * columns,
                longest = lined->rows > lined->columns ? lined->rows : lined->columns,
                multipliers = lined->terms & CK_LINE_REPEATED ? lined->multipliers : 0;
-    const long arrays = 13 * lined->plane + lined->stride + columns * lined->turned_stride +
+    const long arrays = (CK_IS_SINGLE ? 16 : 13) * lined->plane + lined->stride + columns * lined->turned_stride +
                         CK_LINE_KINDS * multipliers + 2 * tiles + CK_LINE_SCRATCH * longest;
-    const size_t bytes = sizeof(double) * (size_t)(arrays + (11 + CK_LINE_KINDS) * CK_MARGIN);
-    lined->state = aligned_alloc(sizeof(double) * CK_STRIPE, bytes);
+    const size_t bytes = sizeof(ck_Real) * (size_t)(arrays + (12 + CK_LINE_KINDS) * CK_MARGIN);
+    lined->state = aligned_alloc(sizeof(ck_Real) * CK_STRIPE, bytes);
     if (!lined->state) return false;
     memset(lined->state, 0, bytes);
-    double *next = lined->state;
+    ck_Real *next = lined->state;
     // first, so that lines that begin beside the cloth begin in the block
     lined->before = take(&next, 3 * lined->plane);
     lined->x = take(&next, 3 * lined->plane);
     lined->start = take(&next, 3 * lined->plane);
     lined->flown = take(&next, 3 * lined->plane);
+    lined->lost = take(&next, CK_IS_SINGLE ? 3 * lined->plane : 0);
     lined->weight = take(&next, lined->plane);
     lined->there = take(&next, lined->stride);
     lined->turned_weight = take(&next, columns * lined->turned_stride);
@@ -117,7 +135,8 @@ static ck_LineSprings springs_of(const ck_RowSprings *springs, ck_SpringKind kin
     const double softness = rule->compliance > 0 ? rule->compliance : 1 / springs->stiffness[kind];
     const double compliance = fmax(softness / ((1 - CK_LINES_KEPT) * rule->dt * rule->dt), ROUNDING * weight),
                  gamma = springs->damping * softness / rule->dt;
-    return (ck_LineSprings){compliance / (1 + gamma), compliance, gamma, 1 / (1 + gamma), springs->rest[kind]};
+    return (ck_LineSprings){(ck_Real)(compliance / (1 + gamma)), (ck_Real)compliance, (ck_Real)gamma,
+                            (ck_Real)(1 / (1 + gamma)), (ck_Real)springs->rest[kind]};
 }
 
 static void set_springs(struct ck_LinedCloth *lined, const ck_RowSprings *springs, double weight) {
@@ -134,16 +153,16 @@ static void start_moving(struct ck_LinedCloth *lined, const ck_ProjectionSetup *
     const struct ck_LinedCloth *last = of(setup->last);
     for (int i = 0; i < lined->rows * lined->columns; i++) {
         const long at = place_of(lined, i);
-        lined->weight[at] = setup->inverse_mass[i];
-        lined->turned_weight[i % lined->columns * lined->turned_stride + i / lined->columns] = setup->inverse_mass[i];
+        lined->weight[at] = (ck_Real)setup->inverse_mass[i];
+        lined->turned_weight[i % lined->columns * lined->turned_stride + i / lined->columns] = lined->weight[at];
         const bool goes_on = last && last->weight[at] > 0 && !(last->is_fresh && last->is_fresh[i]);
         lined->is_fresh[i] = setup->inverse_mass[i] > 0 && !goes_on;
         for (int axis = 0; axis < 3; axis++) {
             const long one = at + axis * lined->plane;
-            lined->x[one] = setup->position[3 * i + axis];
-            lined->start[one] = lined->x[one] - setup->velocity[3 * i + axis] / rate;
+            lined->x[one] = (ck_Real)(setup->position[3 * i + axis] - lined->origin[axis]);
+            lined->start[one] = (ck_Real)(lined->x[one] - setup->velocity[3 * i + axis] / rate);
             lined->flown[one] = lined->x[one] - (goes_on ? last->x[one] - last->flown[one] : 0);
-            lined->before[one] = setup->before[3 * i + axis] / rate;
+            lined->before[one] = (ck_Real)(setup->before[3 * i + axis] / rate);
         }
     }
     for (int column = 0; column < lined->columns; column++) lined->there[column] = 1;
@@ -160,7 +179,9 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
                                     .carried = rule->carry * rule->keep,
                                     .terms = rule->iterations > 1 ? CK_LINE_REPEATED : 0,
                                     .rows = model->particle_count / model->columns,
-                                    .columns = model->columns};
+                                    .columns = model->columns,
+                                    .size = model->size};
+    if (CK_IS_SINGLE) memcpy(lined->origin, setup->position, sizeof lined->origin);
     for (int axis = 0; axis < 3; axis++) lined->push[axis] = rule->dt * rule->push[axis];
     set_springs(lined, setup->springs, 1 / model->mass[0]);
     measure(lined);
@@ -173,6 +194,9 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     return CK_OK;
 }
 
+#ifdef CK_SINGLE
+const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, NULL};
+#else
 static int particle_at(const struct ck_LinedCloth *lined, int place) {
     const int places = (int)ck_line_places(lined);
     return place / places * lined->columns + place % places;
@@ -205,3 +229,4 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
 }
 
 const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, touch};
+#endif

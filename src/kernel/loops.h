@@ -127,7 +127,7 @@ const ck_Loops *ck_loops_at(int index);
 
 // The widest of at most so many doubles; 0: of any. Those of two are there always.
 const ck_Loops *ck_loops_for(uint32_t lanes);
-// Of their kind of vectors, those of single precision, which know rows only: what else there is is NULL.
+// Of their kind of vectors, those of single precision, which know rows and lines only: what else there is is NULL.
 const ck_Loops *ck_loops_single(const ck_Loops *loops);
 
 #endif

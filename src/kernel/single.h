@@ -10,6 +10,7 @@
 #define ck_rows_mark_paired ck_rows_mark_paired_single
 #define ck_explicit_rows ck_explicit_rows_single
 #define ck_projection_rows ck_projection_rows_single
+#define ck_projection_lines ck_projection_lines_single
 #define ck_projection_run ck_projection_run_single
 
 #endif

@@ -66,12 +66,14 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
                         ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
     ck_Native *native;
+    ck_Status status = ck_native_check_precision(model, wanted, ck_projection_fits(model, &springs), error);
+    if (status) return status;
     if (!ck_projection_fits(model, &springs))
         return ck_fail(error, CK_REFUSED,
                        "lines are solved of regular cloths without bending springs, that nothing but springs, a field, "
                        "drag and colliders that stay move");
     translate(model, wanted, used, ledger);
-    ck_Status status = ck_leapfrog_create(&native, model, used, error);
+    status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
     return ck_native_hand_out(state, native, ck_leapfrog_lay_out(native, CK_PROJECT_LINES, error));
 }
@@ -113,6 +115,7 @@ static const ck_Setting settings[] = {
      .help = "compliance of every spring",
      .leaves_theory = true},
     CK_NATIVE_VECTORS_ROW,
+    CK_NATIVE_SINGLE_ROW,
     {0},
 };
 

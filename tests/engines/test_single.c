@@ -9,10 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const engines[] = {"native-verlet", "native-bars", "native-xpbd"};
+static const char *const engines[] = {"native-verlet", "native-bars", "native-xpbd", "native-lines"};
 // Of a frame: stable, and of position-based engines so long that half of a place's last digit, 3e-8 m, is less than a
 // thousandth of gravity's push in one, 4e-5 m: so much of a load rounding may take.
-static const uint32_t steps[] = {50, 10, 10};
+static const uint32_t steps[] = {50, 10, 10, 10};
 
 // Settings of so many substeps in single precision, or in double, with vectors of so many doubles at most.
 static ck_Settings settings_of(uint32_t substeps, bool is_single, int vectors) {

@@ -1,4 +1,4 @@
-// What rows in either precision do, and lines: one row of functions each.
+// What rows and lines do, in either precision: one row of functions each.
 #ifndef CK_CONSTRAINT_KIND_H
 #define CK_CONSTRAINT_KIND_H
 
@@ -19,10 +19,9 @@ typedef struct ck_ProjectionHead {
     struct ck_RowContact *contact; // NULL: there is nothing to touch
 } ck_ProjectionHead;
 
-extern const ck_ProjectionKind ck_projection_rows;
+extern const ck_ProjectionKind ck_projection_rows, ck_projection_lines;
 #ifndef CK_SINGLE
-extern const ck_ProjectionKind ck_projection_lines;
-extern const ck_ProjectionKind ck_projection_rows_single;
+extern const ck_ProjectionKind ck_projection_rows_single, ck_projection_lines_single;
 #endif
 
 // The step of a kind, in sweep_schedule.c.

@@ -6,11 +6,11 @@
 
 enum { DAMPED = CK_LINE_DAMPED, REPEATED = CK_LINE_REPEATED, SLANTED = 4 };
 
-CK_INLINE ck_Lanes3 load(const double *from, long plane) {
+CK_INLINE ck_Lanes3 load(const ck_Real *from, long plane) {
     return (ck_Lanes3){ck_lanes_load(from), ck_lanes_load(from + plane), ck_lanes_load(from + 2 * plane)};
 }
 
-CK_INLINE void store(double *to, long plane, ck_Lanes3 value) {
+CK_INLINE void store(ck_Real *to, long plane, ck_Lanes3 value) {
     ck_lanes_store(to, value.x);
     ck_lanes_store(to + plane, value.y);
     ck_lanes_store(to + 2 * plane, value.z);
@@ -19,8 +19,8 @@ CK_INLINE void store(double *to, long plane, ck_Lanes3 value) {
 // As many lines as there are lanes, side by side: where the first one is in the first row, what is added to be in the
 // next, and the rows in which any of them is on the cloth.
 typedef struct Lines {
-    double *x, *start, *multiplier, *scratch;
-    const double *weight, *there;
+    ck_Real *x, *start, *multiplier, *scratch;
+    const ck_Real *weight, *there;
     long step, plane, weight_step; // of x and start; of weight and multiplier
     int slant;                     // of there
     int first, last;
@@ -80,12 +80,12 @@ CK_INLINE Pivot eliminate(const Lines *lines, const Node *a, const Node *b, cons
     }
     pivot.share = coupling * before->inverse;
     const ck_Lanes diagonal = ck_lanes_minus(a->weight + b->weight + lines->springs.softness, pivot.share, coupling);
-    pivot.inverse = 1 / diagonal;
+    pivot.inverse = ck_lanes_all(1) / diagonal;
     pivot.longer = ck_lanes_minus(pivot.longer, pivot.share, before->longer);
     return pivot;
 }
 
-CK_INLINE void keep(double *scratch, const Pivot *pivot) {
+CK_INLINE void keep(ck_Real *scratch, const Pivot *pivot) {
     store(scratch, CK_STRIPE, pivot->normal);
     ck_lanes_store(scratch + 3 * CK_STRIPE, pivot->longer * pivot->inverse);
     ck_lanes_store(scratch + 4 * CK_STRIPE, pivot->share);
@@ -105,7 +105,7 @@ CK_INLINE void eliminate_lines(const Lines *lines, const int terms) {
 
 // x ← x + w·push
 CK_INLINE void push(const Lines *lines, int row, ck_Lanes3 push) {
-    double *x = lines->x + row * lines->step;
+    ck_Real *x = lines->x + row * lines->step;
     const ck_Lanes weight = ck_lanes_load(lines->weight + row * lines->weight_step);
     store(x, lines->plane, ck_lanes3_add_scaled(load(x, lines->plane), weight, push));
 }
@@ -116,14 +116,14 @@ CK_INLINE void move_lines(const Lines *lines, const int terms) {
     ck_Lanes change = none, share = none;
     ck_Lanes3 after = {none, none, none};
     for (int row = lines->last - 1; row >= lines->first; row--) {
-        const double *kept = lines->scratch + (long)CK_LINE_SCRATCH * row;
+        const ck_Real *kept = lines->scratch + (long)CK_LINE_SCRATCH * row;
         change = ck_lanes_minus(ck_lanes_load(kept + 3 * CK_STRIPE), share, change);
         share = ck_lanes_load(kept + 4 * CK_STRIPE);
         const ck_Lanes3 pull = ck_lanes3_scale(change, load(kept, CK_STRIPE));
         push(lines, row + 1, ck_lanes3_subtract(pull, after));
         after = pull;
         if (terms & REPEATED) {
-            double *multiplier = lines->multiplier + row * lines->weight_step;
+            ck_Real *multiplier = lines->multiplier + row * lines->weight_step;
             ck_lanes_store(multiplier, ck_lanes_load(multiplier) + change);
         }
     }
@@ -171,15 +171,41 @@ CK_INLINE void solve_down(const struct ck_LinedCloth *cloth, ck_LineKind kind, c
     }
 }
 
-// Turns a square of as many vectors as there are lanes.
+// Turns a square of as many vectors as there are lanes: blocks of one, two, four … lanes change places across it.
+#if CK_LANES == 16
 CK_INLINE void turn_square(ck_Lanes *square) {
-#if CK_LANES == 8
+    for (int i = 0; i < 16; i += 2) {
+        const ck_Lanes a = square[i], b = square[i + 1];
+        square[i] = __builtin_shufflevector(a, b, 0, 16, 2, 18, 4, 20, 6, 22, 8, 24, 10, 26, 12, 28, 14, 30);
+        square[i + 1] = __builtin_shufflevector(a, b, 1, 17, 3, 19, 5, 21, 7, 23, 9, 25, 11, 27, 13, 29, 15, 31);
+    }
+    for (int k = 0; k < 8; k++) {
+        const int i = k / 2 * 4 + k % 2;
+        const ck_Lanes a = square[i], b = square[i + 2];
+        square[i] = __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+        square[i + 2] = __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+    }
+    for (int k = 0; k < 8; k++) {
+        const int i = k / 4 * 8 + k % 4;
+        const ck_Lanes a = square[i], b = square[i + 4];
+        square[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26, 27);
+        square[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 20, 21, 22, 23, 12, 13, 14, 15, 28, 29, 30, 31);
+    }
+    for (int i = 0; i < 8; i++) {
+        const ck_Lanes a = square[i], b = square[i + 8];
+        square[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
+        square[i + 8] = __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+    }
+}
+#elif CK_LANES == 8
+CK_INLINE void turn_square(ck_Lanes *square) {
     for (int i = 0; i < 8; i += 2) {
         const ck_Lanes a = square[i], b = square[i + 1];
         square[i] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
         square[i + 1] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
     }
-    for (int i = 0; i < 8; i += i % 4 ? 3 : 1) {
+    for (int k = 0; k < 4; k++) {
+        const int i = k / 2 * 4 + k % 2;
         const ck_Lanes a = square[i], b = square[i + 2];
         square[i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
         square[i + 2] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
@@ -189,7 +215,9 @@ CK_INLINE void turn_square(ck_Lanes *square) {
         square[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
         square[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
     }
+}
 #elif CK_LANES == 4
+CK_INLINE void turn_square(ck_Lanes *square) {
     for (int i = 0; i < 4; i += 2) {
         const ck_Lanes a = square[i], b = square[i + 1];
         square[i] = __builtin_shufflevector(a, b, 0, 4, 2, 6);
@@ -200,15 +228,17 @@ CK_INLINE void turn_square(ck_Lanes *square) {
         square[i] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
         square[i + 2] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
     }
+}
 #else
+CK_INLINE void turn_square(ck_Lanes *square) {
     const ck_Lanes a = square[0], b = square[1];
     square[0] = __builtin_shufflevector(a, b, 0, 2);
     square[1] = __builtin_shufflevector(a, b, 1, 3);
-#endif
 }
+#endif
 
 // From as many rows as there are lanes to a tile a column, and back. Beside the cloth there is room for whole squares.
-CK_INLINE void turn_rows(const struct ck_LinedCloth *cloth, double *tiles, const double *rows) {
+CK_INLINE void turn_rows(const struct ck_LinedCloth *cloth, ck_Real *tiles, const ck_Real *rows) {
     for (int axis = 0; axis < 3; axis++)
         for (int column = 0; column < cloth->columns; column += CK_LANES) {
             ck_Lanes square[CK_LANES];
@@ -219,7 +249,7 @@ CK_INLINE void turn_rows(const struct ck_LinedCloth *cloth, double *tiles, const
         }
 }
 
-CK_INLINE void turn_back(const struct ck_LinedCloth *cloth, double *rows, const double *tiles) {
+CK_INLINE void turn_back(const struct ck_LinedCloth *cloth, ck_Real *rows, const ck_Real *tiles) {
     for (int axis = 0; axis < 3; axis++)
         for (int column = 0; column < cloth->columns; column += CK_LANES) {
             ck_Lanes square[CK_LANES];
@@ -249,19 +279,22 @@ CK_INLINE void solve_along(const struct ck_LinedCloth *cloth, int row, const int
     turn_back(cloth, cloth->x + first, cloth->tiles);
 }
 
-// x̂ ← x + carried·(x − x_start) + push;  x ← x̂ + KEPT·(x − the last x̂);  x_start ← x as it was; of a row.
+// x̂ ← x + carried·(x − x_start) + push;  x ← x̂ + KEPT·(x − the last x̂);  x_start ← x as it was; of a row. In single
+// precision a way has what rounding has kept the last one from; see constraint_loop.c.
 CK_INLINE void predict(const struct ck_LinedCloth *cloth, int row, bool is_last) {
     const ck_Lanes carried = ck_lanes_all(cloth->carried), kept = ck_lanes_all(CK_LINES_KEPT), none = {0};
     for (int axis = 0; axis < 3; axis++) {
         const ck_Lanes gain = ck_lanes_all(cloth->push[axis]);
         const long first = row * cloth->stride, from = axis * cloth->plane + first;
-        double *x = cloth->x + from, *start = cloth->start + from, *before = cloth->before + from,
-               *flown = cloth->flown + from;
+        ck_Real *x = cloth->x + from, *start = cloth->start + from, *before = cloth->before + from,
+                *flown = cloth->flown + from, *lost = cloth->lost + from;
         for (long i = 0; i < cloth->columns; i += CK_LANES) {
-            const ck_Lanes there = ck_lanes_load(x + i), moved = there - ck_lanes_load(start + i);
+            const ck_Lanes there = ck_lanes_load(x + i), pulled = there - ck_lanes_load(flown + i);
             const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(cloth->weight + first + i));
-            const ck_Lanes flies = there + ck_lanes_plus(gain, carried, moved),
-                           pulled = there - ck_lanes_load(flown + i);
+            ck_Lanes moved = there - ck_lanes_load(start + i);
+            if (CK_IS_SINGLE) moved += ck_lanes_load(lost + i);
+            const ck_Lanes way = ck_lanes_plus(gain, carried, moved), flies = there + way;
+            if (CK_IS_SINGLE) ck_lanes_store(lost + i, ck_lanes_choose(is_free, way - (flies - there), none));
             ck_lanes_store(flown + i, ck_lanes_choose(is_free, flies, there));
             ck_lanes_store(x + i, ck_lanes_choose(is_free, ck_lanes_plus(flies, kept, pulled), there));
             ck_lanes_store(start + i, there);
@@ -294,7 +327,7 @@ CK_INLINE void sweep(const struct ck_LinedCloth *cloth, const struct ck_LinedClo
 
 static void forget_multipliers(const struct ck_LinedCloth *cloth) {
     for (int kind = 0; kind < CK_LINE_KINDS; kind++)
-        memset(cloth->multiplier[kind] - CK_MARGIN, 0, sizeof(double) * (size_t)(cloth->multipliers + CK_MARGIN));
+        memset(cloth->multiplier[kind] - CK_MARGIN, 0, sizeof(ck_Real) * (size_t)(cloth->multipliers + CK_MARGIN));
 }
 
 // A substep: the flight, and its sweeps.

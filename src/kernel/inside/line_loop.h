@@ -5,11 +5,11 @@
 #include "constraint_kind.h"
 
 // Columns of nothing at either side of a cloth: diagonals that begin or end beside it are read there.
-#define CK_MARGIN 8
+#define CK_MARGIN CK_STRIPE
 
 // What a line's springs have in common: α̃/(1 + γ̃), 1/kg; α̃; γ̃; 1/(1 + γ̃); m.
 typedef struct ck_LineSprings {
-    double softness, compliance, gamma, share, rest;
+    ck_Real softness, compliance, gamma, share, rest;
 } ck_LineSprings;
 
 // Lines go along rows, or down, or by a column aside in each row.
@@ -28,22 +28,24 @@ struct ck_LinedCloth {
     const ck_Loops *loops;
     ck_ProjectionRule rule;
     double carried, push[3]; // as in constraint_loop.h
+    double size, origin[3];  // m, of the cloth; and, of its places; 0 but in single precision
     int terms, rows, columns;
-    long stride, plane;                    // doubles from a row to the next, and from a coordinate to the next
-    double *x, *start;                     // planes, m, from the first particle on; start: before the last substep
-    double *flown;                         // planes, m: where the last substep's flight ended, and surfaces pushed that
+    long stride, plane;                    // numbers from a row to the next, and from a coordinate to the next
+    ck_Real *x, *start;                    // planes, m, from the first particle on; start: before the last substep
+    ck_Real *flown;                        // planes, m: where the last substep's flight ended, and surfaces pushed that
     bool *is_fresh;                        // [rows*columns] has just begun to move; NULL: none has
-    double *before;                        // planes: m moved in the substep before the last one
-    double *weight;                        // 1/kg; 0 where pinned, and beside
-    double *there;                         // [columns] 1, and 0 beside
-    double *turned_weight;                 // weight, column by column
-    long turned_stride;                    // doubles from a column to the next
-    double *multiplier[CK_LINE_KINDS];     // kg·m, at a spring's first end, as weight or as turned; see terms
-    long multipliers;                      // doubles of each
+    ck_Real *lost;                         // planes, m, in single precision: what rounding took of the last flight
+    ck_Real *before;                       // planes: m moved in the substep before the last one
+    ck_Real *weight;                       // 1/kg; 0 where pinned, and beside
+    ck_Real *there;                        // [columns] 1, and 0 beside
+    ck_Real *turned_weight;                // weight, column by column
+    long turned_stride;                    // numbers from a column to the next
+    ck_Real *multiplier[CK_LINE_KINDS];    // kg·m, at a spring's first end, as weight or as turned; see terms
+    long multipliers;                      // numbers of each
     ck_LineSprings springs[CK_LINE_KINDS]; // rest 0: there are none
-    double *tiles, *start_tiles;           // [padded columns*3*CK_STRIPE] of the rows at work
-    double *scratch;                       // [the larger of rows and columns*CK_LINE_SCRATCH]
-    double *state;
+    ck_Real *tiles, *start_tiles;          // [padded columns*3*CK_STRIPE] of the rows at work
+    ck_Real *scratch;                      // [the larger of rows and columns*CK_LINE_SCRATCH]
+    ck_Real *state;
 };
 
 // Places of a row, with those beside it.

@@ -6,6 +6,7 @@ ck_ExplicitStart CK_LOOP(ck_explicit_start);
 ck_ExplicitRow CK_LOOP(ck_explicit_row);
 ck_ProjectionVisits CK_LOOP(ck_projection_visits);
 ck_Peak CK_LOOP(ck_peak);
+ck_LineSubstep CK_LOOP(ck_line_substep);
 #ifndef CK_SINGLE
 ck_NearRow CK_LOOP(ck_near_row);
 ck_TouchSlide CK_LOOP(ck_touch_slide);
@@ -13,7 +14,6 @@ ck_TouchHold CK_LOOP(ck_touch_hold);
 ck_ListStart CK_LOOP(ck_list_start);
 ck_ListChunk CK_LOOP(ck_list_chunk);
 ck_NearChunk CK_LOOP(ck_near_chunk);
-ck_LineSubstep CK_LOOP(ck_line_substep);
 ck_LineFly CK_LOOP(ck_line_fly);
 ck_LinePress CK_LOOP(ck_line_press);
 ck_SweepPacks CK_LOOP(ck_sweep_packs);
@@ -32,6 +32,7 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .explicit_row = CK_LOOP(ck_explicit_row),
     .projection_visits = CK_LOOP(ck_projection_visits),
     .peak = CK_LOOP(ck_peak),
+    .line_substep = CK_LOOP(ck_line_substep),
 #ifndef CK_SINGLE
     .near_row = CK_LOOP(ck_near_row),
     .touch_slide = CK_LOOP(ck_touch_slide),
@@ -39,7 +40,6 @@ const ck_Loops CK_LOOP(ck_loops) = {
     .list_start = CK_LOOP(ck_list_start),
     .list_chunk = CK_LOOP(ck_list_chunk),
     .near_chunk = CK_LOOP(ck_near_chunk),
-    .line_substep = CK_LOOP(ck_line_substep),
     .line_fly = CK_LOOP(ck_line_fly),
     .line_press = CK_LOOP(ck_line_press),
     .sweep_packs = CK_LOOP(ck_sweep_packs),
