@@ -71,6 +71,7 @@ static const Candidate candidates[] = {
     {"native-verlet", "single precision", {0}, VERLET, .own = "single", .value = 1},
     {"native-bars", "10 iterations, single precision", {.iterations = 10}, BARS, .own = "single", .value = 1},
     {"native-xpbd", "10 iterations, single precision", {.iterations = 10}, XPBD, .own = "single", .value = 1},
+    {"native-lines", "1 iteration, single precision", {.iterations = 1}, BARS, .own = "single", .value = 1},
     {"native-verlet", "springs damped, drag", {0}, VERLET, .work = {33, 19}, .is_damped = true},
     {"native-xpbd", "10 iterations, relaxation 1.3", {.iterations = 10, .relaxation = 1.3}, BARS},
     {"native-rope", "4 iterations", {.iterations = 4}, BARS},

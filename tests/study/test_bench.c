@@ -20,7 +20,7 @@ static void test_search(void **state) {
         const ck_Engine *engine = ck_engine_find(engines[i]);
         ck_BenchCost costs[CK_BENCH_TARGETS];
         char reason[200];
-        ck_bench_front_search(&front, engine, 10, costs, reason);
+        ck_bench_front_search(&front, engine, &(const ck_Settings){0}, 10, costs, reason);
         if (*reason) fail_msg("%s: %s", engines[i], reason);
         double work = 0;
         for (int target = 0; target < CK_BENCH_TARGETS; target++) {
@@ -46,10 +46,10 @@ static void test_refusal(void **state) {
     ck_BenchCost costs[CK_BENCH_TARGETS];
     char reason[200];
     assert_int_equal(ck_bench_front_build(&front, &body, 100, NULL), CK_OK);
-    ck_bench_front_search(&front, ck_engine_find("native-rope"), 1, costs, reason);
+    ck_bench_front_search(&front, ck_engine_find("native-rope"), &(const ck_Settings){0}, 1, costs, reason);
     assert_non_null(strstr(reason, "tridiagonal"));
     assert_true(isnan(costs[0].seconds));
-    ck_bench_front_search(&front, ck_engine_find("seed-tecido"), 1, costs, reason);
+    ck_bench_front_search(&front, ck_engine_find("seed-tecido"), &(const ck_Settings){0}, 1, costs, reason);
     assert_non_null(strstr(reason, "does not model it"));
     ck_bench_front_free(&front);
 }

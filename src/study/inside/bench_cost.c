@@ -14,8 +14,14 @@ const ck_BenchCloth ck_bench_cloths[CK_BENCH_CLOTHS] = {{{"cloth", CK_BENCH_CLOT
 // CPU s of a run at most.
 #define BUDGET 3
 
+// What is not searched, and how a set-up says so.
+typedef struct Base {
+    ck_Settings settings;
+    const char *precision;
+} Base;
+
 static void add_cost(ck_Csv *csv, const ck_BenchCloth *cloth, const ck_BenchFront *built, const ck_Engine *engine,
-                     int target, const ck_BenchCost *cost, const char *reason, int rounds) {
+                     const Base *base, int target, const ck_BenchCost *cost, const char *reason, int rounds) {
     char setup[100], metric[40], why[200];
     double times[CK_BENCH_MAX_ROUNDS], quartiles[3];
     const bool is_found = !isnan(cost->seconds);
@@ -27,13 +33,23 @@ static void add_cost(ck_Csv *csv, const ck_BenchCloth *cloth, const ck_BenchFron
     if (is_found && used > 0)
         used += snprintf(setup + used, sizeof setup - (size_t)used, ", %u substeps", cost->settings.substeps);
     if (is_found && cost->settings.iterations)
-        snprintf(setup + used, sizeof setup - (size_t)used, ", %u iterations", cost->settings.iterations);
+        used += snprintf(setup + used, sizeof setup - (size_t)used, ", %u iterations", cost->settings.iterations);
+    snprintf(setup + used, sizeof setup - (size_t)used, "%s", base->precision);
     snprintf(metric, sizeof metric, "cost_to_%g_percent", 100 * ck_bench_targets[target]);
     ck_bench_add_row(csv, &cloth->body, &built->model, engine->name, setup, metric, "s/s", is_found ? quartiles : NULL,
                      1,
                      is_found  ? NULL
                      : *reason ? reason
                                : "no settings within the budget get there");
+}
+
+static void add_costs_of(ck_Csv *csv, const ck_BenchCloth *cloth, const ck_BenchFront *built, const ck_Engine *engine,
+                         const Base *base, int rounds) {
+    ck_BenchCost costs[CK_BENCH_TARGETS];
+    char reason[200];
+    ck_bench_front_search(built, engine, &base->settings, BUDGET, costs, reason);
+    for (int target = 0; target < CK_BENCH_TARGETS; target++)
+        add_cost(csv, cloth, built, engine, base, target, &costs[target], reason, rounds < 3 ? rounds : 3);
 }
 
 ck_Status ck_bench_add_costs(ck_Csv *csv, const ck_BenchCloth *cloth, const ck_BenchOptions *options, ck_Error *error) {
@@ -48,14 +64,14 @@ ck_Status ck_bench_add_costs(ck_Csv *csv, const ck_BenchCloth *cloth, const ck_B
                          NULL);
     for (int i = 0; i < ck_engine_count() && !status; i++) {
         const ck_Engine *engine = ck_engine_at(i);
-        ck_BenchCost costs[CK_BENCH_TARGETS];
-        char reason[200];
+        const ck_Setting *single = ck_setting_find(engine->settings, "single");
         if (engine->method == CK_METHOD_STILL) continue;
         if (options->progress) options->progress(cloth->body.name, engine->name);
-        ck_bench_front_search(&built, engine, BUDGET, costs, reason);
-        for (int target = 0; target < CK_BENCH_TARGETS; target++)
-            add_cost(csv, cloth, &built, engine, target, &costs[target], reason,
-                     options->rounds < 3 ? options->rounds : 3);
+        add_costs_of(csv, cloth, &built, engine, &(Base){{0}, ""}, options->rounds);
+        if (!single) continue;
+        Base base = {{0}, ", single precision"};
+        ck_settings_set(&base.settings, single->slot, 1);
+        add_costs_of(csv, cloth, &built, engine, &base, options->rounds);
     }
     ck_bench_front_free(&built);
     return status;

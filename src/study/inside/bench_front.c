@@ -128,8 +128,8 @@ static void refine(const ck_BenchFront *front, const ck_Engine *engine, double b
     take(costs, &wanted, error, seconds);
 }
 
-void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, double budget, ck_BenchCost *costs,
-                           char reason[200]) {
+void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, const ck_Settings *base, double budget,
+                           ck_BenchCost *costs, char reason[200]) {
     const bool sweeps_over = ck_setting_find(engine->settings, "iterations") != NULL;
     *reason = 0;
     for (int i = 0; i < CK_BENCH_TARGETS; i++) costs[i] = (ck_BenchCost){.seconds = NAN};
@@ -137,7 +137,9 @@ void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, 
     for (size_t k = 0; k < (sweeps_over ? sizeof sweeps / sizeof *sweeps : 1) && !*reason; k++) {
         double seconds = 0;
         for (uint32_t substeps = 2; substeps <= MOST_SUBSTEPS && !*reason; substeps = next_substeps(substeps)) {
-            const ck_Settings wanted = {.substeps = substeps, .iterations = sweeps_over ? sweeps[k] : 0};
+            ck_Settings wanted = *base;
+            wanted.substeps = substeps;
+            if (sweeps_over) wanted.iterations = sweeps[k];
             const double most = fmin(budget, costs[CK_BENCH_TARGETS - 1].seconds * FRAMES * FRAME);
             // more steps take longer by as much, or nearly
             if (1.2 * seconds * FRAMES * FRAME > most) break;

@@ -29,10 +29,12 @@ typedef struct ck_BenchCost {
 } ck_BenchCost;
 
 // The cheapest of an engine for each target, [CK_BENCH_TARGETS], over 2, 3, 4, 6, 8 … substeps and several numbers of
-// sweeps, and then over the number of substeps halfway to the next lower one of those; budget: CPU s of a run at most.
+// sweeps, and then over the number of substeps halfway to the next lower one of those.
+//   base    the settings that are not searched
+//   budget  CPU s of a run at most
 // An error that is not there says why in words.
-void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, double budget, ck_BenchCost *costs,
-                           char reason[200]);
+void ck_bench_front_search(const ck_BenchFront *front, const ck_Engine *engine, const ck_Settings *base, double budget,
+                           ck_BenchCost *costs, char reason[200]);
 
 // The error of a run, and its CPU seconds a simulated second; NaN where it fails, takes longer than the budget or is
 // beyond every target.
