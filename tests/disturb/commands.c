@@ -3,6 +3,7 @@
 #include "fixture.h"
 #include "fixture_program.h"
 
+#include <ftw.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -44,11 +45,24 @@ static const char *const files[][2] = {
                    "sweep:\n  - springs.stiffness: [50, 100]\n"},
 };
 
+static int remove_below(const char *path, const struct stat *status, int kind, struct FTW *walk) {
+    (void)status;
+    (void)kind;
+    return walk->level > 0 && remove(path);
+}
+
 // The folder itself may be a disk's root, and stays.
 static void empty(const char *directory) {
     char line[700];
-    snprintf(line, sizeof line, "mkdir -p %s && find %s -mindepth 1 -delete", directory, directory);
-    if (system(line)) fail_msg("%s stays", directory);
+    snprintf(line, sizeof line, "mkdir -p %s", directory);
+    if (access(directory, F_OK) && system(line)) fail_msg("%s cannot be made", directory);
+    if (nftw(directory, remove_below, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT)) fail_msg("%s stays", directory);
+}
+
+static void copy(const char *from, const char *to) {
+    char line[800];
+    snprintf(line, sizeof line, "mkdir -p %s && cp -a %s/. %s", to, from, to);
+    if (system(line)) fail_msg("%s cannot be copied to %s", from, to);
 }
 
 static void write_file(const char *directory, const char *name, const char *text) {
@@ -80,16 +94,27 @@ static void fill(const char *directory) {
     write_path(directory);
 }
 
-void commands_prepare(const char *directory, const Command *command) {
-    char said[400], line[400];
-    empty(directory);
-    fill(directory);
-    for (const char *next = command->before; next && *next; next += *next == '\n') {
+// Once for each command: then its files are kept.
+static void run_before(const char *directory, const Command *command) {
+    char said[400], line[400], kept[300];
+    snprintf(kept, sizeof kept, "%s/before-%s", fixture_directory, command->name);
+    if (!access(kept, F_OK)) {
+        copy(kept, directory);
+        return;
+    }
+    for (const char *next = command->before; *next; next += *next == '\n') {
         const size_t length = strcspn(next, "\n");
         snprintf(line, sizeof line, "%.*s", (int)length, next);
         if (commands_run(directory, NULL, line, said, sizeof said)) fail_msg("%s: %s", line, said);
         next += length;
     }
+    copy(directory, kept);
+}
+
+void commands_prepare(const char *directory, const Command *command) {
+    empty(directory);
+    fill(directory);
+    if (command->before) run_before(directory, command);
 }
 
 int commands_run(const char *directory, const char *disturbance, const char *line, char *said, size_t size) {
