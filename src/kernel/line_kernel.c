@@ -132,10 +132,11 @@ static bool allocate(struct ck_LinedCloth *lined) {
 // Springs give way by rounding at least, or lines that reach straight from pin to pin would have no solution.
 static ck_LineSprings springs_of(const ck_RowSprings *springs, ck_SpringKind kind, const ck_ProjectionRule *rule,
                                  double weight) {
-    const double softness = rule->compliance > 0 ? rule->compliance : 1 / springs->stiffness[kind];
-    const double compliance = fmax(softness / ((1 - CK_LINES_KEPT) * rule->dt * rule->dt), ROUNDING * weight),
+    const double softness = rule->compliance > 0 ? rule->compliance : 1 / springs->stiffness[kind],
+                 least = ROUNDING * weight;
+    const double compliance = fmax(softness / ((1 - CK_LINES_KEPT) * rule->dt * rule->dt), least),
                  gamma = springs->damping * softness / rule->dt;
-    return (ck_LineSprings){(ck_Real)(compliance / (1 + gamma)), (ck_Real)compliance, (ck_Real)gamma,
+    return (ck_LineSprings){(ck_Real)fmax(compliance / (1 + gamma), least), (ck_Real)compliance, (ck_Real)gamma,
                             (ck_Real)(1 / (1 + gamma)), (ck_Real)springs->rest[kind]};
 }
 

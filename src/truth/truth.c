@@ -227,8 +227,8 @@ static ck_Status check_work(const ck_Truth *truth, const ck_Model *model, const 
     const double seconds = truth->form->work ? SECONDS_OF_WORK * truth->form->work(model) : 0;
     return seconds <= limits->seconds
                ? CK_OK
-               : ck_fail(error, CK_REFUSED, "%s: its truth would take more than %.3g s; --time-limit is %g s",
-                         model->name, seconds, limits->seconds);
+               : ck_fail(error, CK_REFUSED, "%s: its truth would take some %.3g s; --time-limit is %g s", model->name,
+                         seconds, limits->seconds);
 }
 
 // In a child, as no work of ours knows how long it takes. CK_REFUSED, too, where it passes a limit.
@@ -290,8 +290,8 @@ ck_Status ck_truth_create(ck_Truth *truth, const ck_Model *model, const char *ca
     if (status || !model->truth) return status;
     truth->form = ck_truth_form_find(model->truth);
     truth->reference.is_static = truth->form->is_static;
-    const char *open = truth->form->leaves_open ? truth->form->leaves_open(model) : NULL;
-    snprintf(truth->kind, sizeof truth->kind, "%s%s%s", truth->form->kind, open ? ", " : "", open ? open : "");
+    const char *note = truth->form->leaves_open ? truth->form->leaves_open(model) : NULL;
+    snprintf(truth->kind, sizeof truth->kind, "%s%s%s", truth->form->kind, note ? ", " : "", note ? note : "");
     truth->reference.is_invariant = !truth->form->at && !truth->form->solve;
     if (truth->reference.is_invariant) return CK_OK;
     status = truth->form->at ? sample(truth, model, error) : solve(truth, model, cache, limits, error);

@@ -122,6 +122,27 @@ static void test_bits(void **state) {
     }
 }
 
+// A corner that is let go after half of the time: lines go on from what they pulled, damped, a sweep a substep.
+static void test_let_go(void **state) {
+    (void)state;
+    char text[600];
+    ck_Trajectory fine, path;
+    ck_Settings wide = settings_of(steps[3], false, 0), narrow = settings_of(steps[3], true, 0);
+    wide.iterations = narrow.iterations = 1;
+    write_scene(text, ", origin: [30, 0, 0]",
+                "pins: [top_left, top_right]\nrelease: [{at: 0.1, pins: [top_right]}]\n"
+                "noise: {amplitude: 1e-3, seed: 3}\n",
+                12);
+    char *springs = strstr(text, "shear: 150}");
+    memcpy(springs, "damping: 2}", 11);
+    run(&fine, text, "native-lines", &wide);
+    run(&path, text, "native-lines", &narrow);
+    assert_near("native-lines", apart(&fine, &path, nowhere), 0, 1e-4);
+    assert_true(apart(&fine, &path, nowhere) > 0);
+    ck_trajectory_free(&fine);
+    ck_trajectory_free(&path);
+}
+
 // Refused, with a word of what would do, where a body is no regular cloth or touches something.
 static void test_refusals(void **state) {
     (void)state;
@@ -148,6 +169,7 @@ static void test_refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_precision), cmocka_unit_test(test_flight),
-                                       cmocka_unit_test(test_bits), cmocka_unit_test(test_refusals)};
+                                       cmocka_unit_test(test_bits), cmocka_unit_test(test_let_go),
+                                       cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

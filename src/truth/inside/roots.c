@@ -10,6 +10,7 @@
 #include "vector.h"
 #include "wind.h"
 
+#include <math.h>
 #include <string.h>
 
 // Starts are nudged by up to this share of the spacing: enough to leave a saddle, too little to choose a basin by
@@ -63,22 +64,23 @@ static ck_Status add_position(ck_Truth *truth, const ck_Model *model, const doub
     return status;
 }
 
-// A frame, of the reference integrator that follows a release; 0 without memory.
-static uint32_t release_substeps(const ck_Model *model) {
+// Of a frame, of the reference integrator that follows a release; 0 without memory.
+static double release_substeps(const ck_Model *model) {
     double frequency;
     if (ck_stability_frequency(model, &frequency)) return 0;
-    // damping narrows the stable range of 2.78/ω
-    const double rate = frequency + frequency * frequency * ck_stability_damping_time(model) + model->drag;
-    return ck_stability_substeps(model, 1 / rate);
+    // damping narrows the stable range of 2.83/ω
+    return ceil(model->step * (frequency + ck_stability_damping_rate(model) + model->drag));
 }
 
-// How many springs and particles may be evaluated to follow a release: some minute.
+// How many substeps of a frame, and springs and particles in all, may be evaluated to follow a release: some minute.
+#define MOST_SUBSTEPS 1e5
 #define MOST_RELEASE 1.2e10
 
 // The reference knows no rigid bodies, and dampers can make its steps too short.
 static bool has_release(const ck_Model *model) {
-    const double steps = (double)release_substeps(model) * model->frame_count;
-    return !model->rigid_count && 4 * steps * (model->spring_count + model->particle_count) <= MOST_RELEASE;
+    const double substeps = release_substeps(model), evaluated = model->spring_count + model->particle_count;
+    return !model->rigid_count && substeps <= MOST_SUBSTEPS &&
+           4 * substeps * model->frame_count * evaluated <= MOST_RELEASE;
 }
 
 const char *ck_truth_equilibrium_leaves_open(const ck_Model *model) {
@@ -89,8 +91,8 @@ const char *ck_truth_equilibrium_leaves_open(const ck_Model *model) {
 // and a scene that cannot be told from rest no better than that has that uncertainty.
 static ck_Status integrate_release(ck_Trajectory *release, const ck_Model *model, ck_Error *error) {
     const int substeps = (int)release_substeps(model);
-    return substeps ? ck_reference_integrate(release, model, substeps, 0, 0, error)
-                    : ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
+    return substeps > 0 ? ck_reference_integrate(release, model, substeps, 0, 0, error)
+                        : ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
 }
 
 // The release as it is, then nudged; and at last its motion.
@@ -153,9 +155,9 @@ static ck_Status check_untouched(const ck_Model *model, const ck_Trajectory *pat
     return CK_OK;
 }
 
-// A first path, and at half its step it and a nudged one side by side.
+// A first path, and at half its step it and a nudged one side by side. In contact a part of it may do.
 double ck_truth_trajectory_work(const ck_Model *model) {
-    return 3 * ck_reference_work(model);
+    return (model->collider_count ? 1 : 3) * ck_reference_work(model);
 }
 
 ck_Status ck_truth_solve_trajectory(ck_Truth *truth, const ck_Model *model, ck_Error *error) {

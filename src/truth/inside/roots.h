@@ -13,7 +13,7 @@ ck_Status ck_truth_rest_check(const ck_Model *model, ck_Error *error);
 // The equilibrium that the release leads to, and those of nudged starts.
 ck_Status ck_truth_solve_equilibrium(ck_Truth *truth, const ck_Model *model, ck_Error *error);
 
-// What the release's own motion would have said.
+// What is not known where the release's own motion is not followed; NULL: it is.
 const char *ck_truth_equilibrium_leaves_open(const ck_Model *model);
 
 // The reference path, and the one at twice its step.

@@ -204,8 +204,8 @@ static ck_Status first_substeps(const ck_Model *model, int *substeps) {
         return CK_OK;
     }
     ck_Status status = ck_stability_frequency(model, &frequency);
-    const double slowest = fmin(0.7 / fmax(frequency, 1e-300), 2.5 / fmax(ck_stability_damping_rate(model), 1e-300));
-    *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, slowest));
+    const double longest = fmin(0.7 / fmax(frequency, 1e-300), 2.5 / fmax(ck_stability_damping_rate(model), 1e-300));
+    *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, longest));
     return status;
 }
 

@@ -45,15 +45,15 @@ static void fall_by_a_step(const Fall *fall) {
     for (int i = 0; i < 3 * fall->model->particle_count; i++) fall->velocity[i] += 0.5 * dt * fall->acceleration[i];
 }
 
-// Of the stiffest motion's frequency, the fastest rate of spring damping on the way to rest. More would only take more
-// steps, without a bound: at this a step is an eighth of an undamped one.
+// Of the stiffest motion's frequency, the fastest rate of spring damping on the way to rest; twice of it is critical.
+// More would only take more steps, without a bound: at this a step is an eighth of an undamped one.
 #define MOST_DAMPING 4
 
 // A copy of the springs whose dampers are as strong as they are worth stepping; NULL without memory.
 static ck_Spring *damped_springs(const ck_Model *model, double frequency) {
     ck_Spring *springs = malloc(((size_t)model->spring_count + 1) * sizeof *springs);
     if (!springs) return NULL;
-    const double share = fmin(1, MOST_DAMPING / (frequency * ck_stability_damping_time(model)));
+    const double share = fmin(1, MOST_DAMPING * frequency / ck_stability_damping_rate(model));
     for (int i = 0; i < model->spring_count; i++) {
         springs[i] = model->springs[i];
         springs[i].damping *= share;
@@ -63,7 +63,7 @@ static ck_Spring *damped_springs(const ck_Model *model, double frequency) {
 
 // Half of the step at which the stiffest motion grows, and a quarter of the time in which drag takes a speed.
 static uint32_t choose_step(const ck_Model *model, double frequency) {
-    double damping = frequency * frequency * ck_stability_damping_time(model) + model->drag;
+    double damping = ck_stability_damping_rate(model) + model->drag;
     double limit = fmin(ck_stability_drag_time(model, 0.25), 0.5 * ck_stability_verlet_limit(frequency, damping));
     return ck_stability_substeps(model, limit);
 }
@@ -79,9 +79,9 @@ static double fastest(const Fall *fall) {
     return isfinite(sum) ? largest : NAN;
 }
 
-// Memory of a fall; false where there is none.
+// Memory, dampers and the step of a fall; false without memory.
 //   moved  of which springs become a copy
-static bool make_room(Fall *fall, ck_Model *moved, double *position) {
+static bool prepare(Fall *fall, ck_Model *moved, double *position) {
     const size_t count = 3 * (size_t)moved->particle_count;
     double frequency, *memory = malloc(3 * count * sizeof *memory);
     const bool is_known = !ck_stability_frequency(moved, &frequency);
@@ -132,7 +132,7 @@ ck_Status ck_settle(const ck_Model *model, double nudge, uint64_t seed, double s
     // without damping it would swing for ever: then the drag that is critical for a pendulum of its size
     if (moved.drag == 0 && !(moved.terms & CK_TERM_DAMPING))
         moved.drag = 2 * sqrt(ck_stability_load(model) / ck_model_free_mass(model) / model->size);
-    if (!make_room(&fall, &moved, position) || ck_touching_create(&touching, model, origin, stiffness))
+    if (!prepare(&fall, &moved, position) || ck_touching_create(&touching, model, origin, stiffness))
         status = ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
     fall.touching = touching;
     if (!status) start_falling(&fall, nudge, seed);
