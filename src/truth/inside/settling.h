@@ -7,7 +7,8 @@
 #include <stdint.h>
 
 // Steps a copy of the model, nudged, until it stays still or its duration ends. Without damping it has the drag that is
-// critical for a pendulum of its size; dampers beyond twice what is critical for its stiffest motion are weakened to that.
+// critical for a pendulum of its size; dampers beyond twice what is critical for its stiffest motion are weakened to
+// that.
 //   nudge      m, the largest offset of a particle at the start
 //   stiffness  N/m, of what pushes out of surfaces
 //   position   [3*n] out, m
