@@ -126,13 +126,16 @@ static void end_lower(const BothWays *ways, int place, bool is_out, int *ends) {
     set(ends, !is_out && row + 1 < rows ? row + 1 : -1, leaves ? row : -1);
 }
 
+// The outermost sweeps first, from either end: sweeps one after the other would be rows as far apart each, and a
+// processor that sees them fetches the next ones so far on, of the other half, out of the cache of who works on it.
 static void run_both_ways(void *state, long step, bool runs_upper, bool runs_lower) {
     const BothWays *ways = state;
     const Stage stage = stage_at(ways, step);
     ck_Visits visits;
     visits.count = 0;
     visits.is_turned = stage.is_out;
-    for (int i = stage.first; i < stage.end; i++) {
+    for (int turn = 0; turn < stage.end - stage.first; turn++) {
+        const int i = turn % 2 ? stage.end - 1 - turn / 2 : stage.first + turn / 2;
         const int place = place_of(ways, &stage, i);
         if (runs_upper && place < ways->upper) {
             if (ways->cloth->head.contact) end_upper(place, stage.is_out, visits.ends[visits.count]);
@@ -145,22 +148,32 @@ static void run_both_ways(void *state, long step, bool runs_upper, bool runs_low
     ways->cloth->loops->projection_visits(ways->cloth, &visits);
 }
 
-// A sweep is at the row that both halves share.
-static bool halves_meet(void *state, long step) {
+// On the way in the upper half is the first at the row that both share, on the way out the lower one. What the other
+// has done there before is a sweep ago, or as long ago as its own way from there to here is longer; at the turn, and
+// where a substep begins, a half finds what it left itself.
+static bool meets_other(void *state, long step, int half, long *needs) {
     const BothWays *ways = state;
     const Stage stage = stage_at(ways, step);
-    for (int i = stage.first; i < stage.end; i++)
-        if (place_of(ways, &stage, i) == ways->places - 1) return true;
+    const int last = half == 0 ? ways->upper - 1 : ways->places - 1, further = ways->places - ways->upper;
+    for (int i = stage.first; i < stage.end; i++) {
+        if (place_of(ways, &stage, i) != last) continue;
+        const bool is_second = (half == 1) != stage.is_out;
+        if (is_second)
+            *needs = step + 1 - further;
+        else if (i > 0)
+            *needs = step + 1 - ways->lag + further;
+        return true;
+    }
     return false;
 }
 
-// A cloth beyond the second cache has its sweeps close together, so that it comes to it but once; else as many are
-// under way in each half as the first cache holds the rows of, of both halves or of a thread's own.
-static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps, int halves) {
-    const size_t bytes = row_bytes(cloth), together = (size_t)halves * LAG * bytes;
-    const bool is_beyond = ck_waves_depth(NULL, sweeps, cloth->rows.rows, LAG, bytes) > 1;
+// A cloth beyond the second cache has its sweeps close together, so that it comes to it but once; so has one that two
+// threads share, so that each has few rows at hand; else as many are under way as the first cache holds the rows of.
+static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps, bool is_shared) {
+    const size_t bytes = row_bytes(cloth), together = 2 * LAG * bytes;
+    const bool is_close = is_shared || ck_waves_depth(NULL, sweeps, cloth->rows.rows, LAG, bytes) > 1;
     const int depth = (int)((FIRST_CACHE + together - 1) / together),
-              lag = is_beyond ? LAG : at_least((places + depth - 1) / depth, LAG);
+              lag = is_close ? LAG : at_least((places + depth - 1) / depth, LAG);
     return at_least(lag, (2 * places + CK_MOST_VISITS - 1) / CK_MOST_VISITS);
 }
 
@@ -170,11 +183,11 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
     ways.in = sweeps - ways.out;
     ways.places = rows - ways.upper;
     if (ways.places < LEAST_PLACES) waves = NULL;
-    ways.lag = lag_of(cloth, ways.places, ways.in, waves ? 1 : 2);
+    ways.lag = lag_of(cloth, ways.places, ways.in, waves != NULL);
     ways.waves[0] = ways.places + ways.lag * (ways.in - 1);
     ways.waves[1] = ways.places + ways.lag * (ways.out - 1);
     ck_waves_run_halves(
-        waves, &(ck_HalvesWork){run_both_ways, halves_meet, &ways, (long)substeps * (ways.waves[0] + ways.waves[1])});
+        waves, &(ck_HalvesWork){run_both_ways, meets_other, &ways, (long)substeps * (ways.waves[0] + ways.waves[1])});
 }
 
 // The origin follows a cloth that has gone farther than it is wide.

@@ -64,19 +64,16 @@ static void run_part(ck_Waves *waves, int part) {
     }
 }
 
-// A step tells how many are done before it. A half that waits for the other has told so.
+// Told are the steps that the other half may wait for: each time takes the line away from one that looks.
 static void run_half(ck_Waves *waves, int half) {
     const ck_HalvesWork work = *waves->halves;
     Worker *self = &waves->workers[half], *other = &waves->workers[1 - half];
-    bool met = false;
     for (long step = 0; step < work.steps; step++) {
-        const bool meet = work.meet(work.state, step);
-        if (meet || met) {
-            atomic_store_explicit(&self->done, step, memory_order_release);
-            wait_for(other, step);
-        }
+        long needs = 0;
+        const bool meets = work.meets(work.state, step, half, &needs);
+        if (meets) wait_for(other, needs);
         work.run(work.state, step, half == 0, half == 1);
-        met = meet;
+        if (meets) atomic_store_explicit(&self->done, step + 1, memory_order_release);
     }
     atomic_store_explicit(&self->done, work.steps, memory_order_release);
 }

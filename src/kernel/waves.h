@@ -43,10 +43,11 @@ typedef struct ck_Passes {
 
 void ck_passes_run(ck_Waves *waves, const ck_Passes *passes);
 
-// Two halves of a job that go through the same steps, each by itself but where they meet.
+// Two halves of a job that go through the same steps, each by itself but where they come to what both share.
+//   meets  true where a half comes there in a step; *needs: steps that the other must have done before, 0 for none
 typedef struct ck_HalvesWork {
     void (*run)(void *state, long step, bool runs_first, bool runs_second);
-    bool (*meet)(void *state, long step); // such a step and the one after it need all before them of both halves
+    bool (*meets)(void *state, long step, int half, long *needs);
     void *state;
     long steps;
 } ck_HalvesWork;

@@ -2,6 +2,7 @@
 
 #include "bench_body.h"
 #include "bench_cost.h"
+#include "bench_processor.h"
 #include "bench_row.h"
 #include "csv_child.h"
 #include "engines.h"
@@ -323,19 +324,6 @@ static ck_Status add_residuals(ck_Csv *csv, const ck_BenchBody *body, const ck_B
     return status;
 }
 
-#define PEAK_ROUNDS 200000
-
-// Operations a second, at best: what no loop here can beat.
-static double find_peak(void) {
-    double best = 0;
-    for (int i = 0; i < 20; i++) {
-        double result, start = ck_thread_cpu();
-        long count = ck_loops_at(0)->peak(PEAK_ROUNDS, &result);
-        best = fmax(best, (double)count / (ck_thread_cpu() - start));
-    }
-    return best;
-}
-
 static double bytes_in_use(void) {
     struct mallinfo2 info = mallinfo2();
     return (double)(info.uordblks + info.hblkhd);
@@ -461,12 +449,10 @@ static ck_Status check_only(const char *only, ck_Error *error) {
 }
 
 ck_Status ck_bench_write(ck_Csv *csv, const ck_BenchOptions *options, ck_Error *error) {
-    ck_Status status = check_only(options->only, error);
-    if (status) return status;
-    const double peak = find_peak(), each[3] = {peak, peak, peak};
     const ck_BenchBody growing = {"growing cloth", CK_BENCH_CLOTH, 1, 1};
-    ck_Model none = {0};
-    ck_bench_add_row(csv, &(ck_BenchBody){.name = "processor"}, &none, "", "", "operations_peak", "1/s", each, 1, NULL);
+    double peak = 0;
+    ck_Status status = check_only(options->only, error);
+    if (!status) status = ck_bench_add_processor(csv, &peak, error);
     for (size_t i = 0; i < BODIES && !status; i++)
         status = add_section(csv, (Section){parts[PART_STEPS], write_race, &bodies[i], NULL, options, peak}, error);
     for (size_t i = 0; i < BODIES && !status; i++)
