@@ -146,7 +146,8 @@ static void test_moving(void **state) {
     // let go unstretched it bounces to twice the strain at rest
     double rest = 60 * 9.81 / 560.5714285714286 / 20;
     assert_near("peak", metric_of(&fixture, &path, "stretch_peak"), 2 * rest, 1e-4 * rest);
-    // and pulls with twice its weight, which is what the pin holds then; a frame may be half a one off the turn
+    // and pulls with twice its weight, which is what the pin holds then; a frame may be half a one off the turn,
+    // and the pin's force is the mean of one
     assert_near("tension", metric_of(&fixture, &path, "tension_peak"), 2 * 60 * 9.81, 1e-3 * 60 * 9.81);
     assert_near("pin", metric_of(&fixture, &path, "pin_force_peak"), 2, 1e-3);
     assert_near("deepest", metric_of(&fixture, &path, "sag_peak"), (20 + 40 * rest) / 20, 1e-4 * rest);
@@ -177,6 +178,98 @@ static void test_pins_hold_the_weight(void **state) {
     }
 }
 
+// The pull that springs and hinges have at a frame, where a path of it alone starts.
+static double pull_at(const TruthFixture *fixture, const ck_Trajectory *path, int frame) {
+    ck_Trajectory alone = *path;
+    alone.data += 6 * (size_t)path->particle_count * (size_t)frame;
+    alone.frame_count = 1;
+    return metric_of(fixture, &alone, "pin_force");
+}
+
+static double held_until(const TruthFixture *fixture, const ck_Trajectory *path, int frame) {
+    ck_Trajectory until = *path;
+    until.frame_count = frame + 1;
+    return metric_of(fixture, &until, "pin_force");
+}
+
+// The farthest that the force by momentum is from the mean of springs' pulls at both ends of a frame.
+static double force_gap(const char *text, int fps) {
+    TruthFixture fixture;
+    ck_Trajectory path;
+    double gap = 0;
+    char whole[1200];
+    snprintf(whole, sizeof whole, text, fps);
+    integrate(&fixture, &path, whole, 6400 / fps);
+    for (int frame = 1; frame < path.frame_count; frame++) {
+        const double mean = 0.5 * (pull_at(&fixture, &path, frame - 1) + pull_at(&fixture, &path, frame));
+        gap = fmax(gap, fabs(held_until(&fixture, &path, frame) - mean));
+    }
+    ck_trajectory_free(&path);
+    fixture_free_truth(&fixture);
+    return gap;
+}
+
+// What momentum says of the pins is what springs and hinges pull, whatever else drives a body: both differ by what the
+// rule of two ends leaves, of second order in the frame.
+static void test_momentum_tells_the_pins(void **state) {
+    (void)state;
+    static const char *const cases[] = {
+        "name: wind\ncloth: {rows: 4, columns: 5, spacing: 0.1, mass: 0.1, down: [0, -1, 0]}\n"
+        "springs: {stiffness: 60, shear: 30, damping: 0.05}\nbending: {stiffness: 0.02}\npins: [left_edge]\n"
+        "wind: {velocity: [3, 0, 2], drag: 1.2, lift: 0.6}\ngravity: [0, -9.81, 0]\ndrag: 0.7\n"
+        "time: {duration: 0.5, fps: %d}\n",
+        "name: moved\ncloth: {rows: 4, columns: 4, spacing: 0.1, mass: 0.1, down: [0, -1, 0]}\n"
+        "springs: {stiffness: 60, shear: 30}\npins: [top_edge]\n"
+        "moves: [{pins: [top_edge], path: {amplitude: [0, 0.004, 0], frequency: 2}}]\ngravity: [0, -9.81, 0]\n"
+        "drag: 2\ntime: {duration: 0.5, fps: %d}\n",
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const double coarse = force_gap(cases[i], 200), fine = force_gap(cases[i], 400);
+        if (!(coarse < 0.02 && fine < coarse / 3)) fail_msg("case %zu: %g and %g apart", i, coarse, fine);
+    }
+}
+
+// What holds is asked of the solver, not of its springs: a pendulum of a rigid bar that is let go level holds three
+// times its weight at the bottom, and bars that rest hold all of it. Once a pin has let
+// go the other holds what it held, and that of the freed particle: four of what were three at the start.
+static void test_force_of_the_solver(void **state) {
+    (void)state;
+    static const char *const pendulum =
+        "name: pendulum\nrope: {particles: 2, spacing: 1, mass: 2, along: [1, 0, 0]}\nsprings: {rigid: true}\n"
+        "pins: [first]\ngravity: [0, -9.81, 0]\ntime: {duration: 1, fps: 200}\n";
+    static const char *const net =
+        "name: net\ncloth: {rows: 6, columns: 6, spacing: 0.1, mass: 0.2, down: [0, 0, 1]}\n"
+        "springs: {stiffness: 200, shear: 100}\npins: [top_left, top_right]\ngravity: [0, -9.81, 0]\ndrag: 4\n"
+        "time: {duration: 6, fps: 60}\n";
+    static const char *const dropped =
+        "name: dropped\nrope: {particles: 5, spacing: 0.1, mass: 0.1, along: [1, 0, 0]}\nsprings: {stiffness: 500}\n"
+        "pins: ['0', '4']\nrelease: [{at: 0.5, pins: ['4']}]\ngravity: [0, -9.81, 0]\ndrag: 8\n"
+        "time: {duration: 4, fps: 60}\n";
+    static const struct {
+        const char *text, *engine, *metric;
+        double force, within;
+    } cases[] = {
+        // the lowest point is at most half a frame off: 3·(ω·h/2)²/2, and a mean over one costs a third of it
+        {pendulum, "native-rope", "pin_force_peak", 3, 3 * (2 * 9.81) * 0.0025 * 0.0025},
+        {pendulum, "native-bars", "pin_force_peak", 3, 3 * (2 * 9.81) * 0.0025 * 0.0025},
+        {net, "native-bars", "pin_force", 1, 1e-3},
+        {net, "native-xpbd", "pin_force", 1, 1e-3},
+        {net, "native-lines", "pin_force", 1, 1e-3},
+        {net, "ode-quick", "pin_force", 1, 1e-3},
+        {dropped, "native-verlet", "pin_force", 4 / 3.0, 1e-3},
+        {dropped, "native-bars", "pin_force", 4 / 3.0, 1e-3},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        TruthFixture fixture;
+        ck_Trajectory path;
+        fixture_load_truth(&fixture, cases[i].text);
+        fixture_run(&path, &fixture.model, ck_engine_find(cases[i].engine), NULL, NULL);
+        assert_near(cases[i].engine, metric_of(&fixture, &path, cases[i].metric), cases[i].force, cases[i].within);
+        ck_trajectory_free(&path);
+        fixture_free_truth(&fixture);
+    }
+}
+
 // A cloth that lies on the floor is all on it; one that is moved into it by three spacings is inside as long.
 static void test_on_the_floor(void **state) {
     (void)state;
@@ -203,6 +296,8 @@ int main(void) {
         cmocka_unit_test(test_sag_of_free),
         cmocka_unit_test(test_moving),
         cmocka_unit_test(test_pins_hold_the_weight),
+        cmocka_unit_test(test_momentum_tells_the_pins),
+        cmocka_unit_test(test_force_of_the_solver),
         cmocka_unit_test(test_on_the_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

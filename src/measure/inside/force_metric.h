@@ -1,16 +1,18 @@
-// What springs and pins carry, by the scene's own stiffness. All have the signatures of ck_Metric; rigid bars tell no
-// force, and have none of these.
+// What springs and pins carry. All have the signatures of ck_Metric.
 #ifndef CK_FORCE_METRIC_H
 #define CK_FORCE_METRIC_H
 
 #include "metric.h"
 
-// The largest pull of a spring, N.
+// The largest pull of a spring by the scene's own stiffness, N; NaN of rigid bars.
 double ck_metric_tension_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                             const ck_Reference *reference);
 
-// The force on all pins at a frame, by the springs and hinges that end there, / weight of what is free at the start.
-// At rest it is 1, unless a solver's springs are not the scene's. NaN without pins or field.
+// The mean force on the pins over the frame that ends here, by the balance of momentum of all that is free, / weight of
+// what is free at the start. So it is the solver's own force, whether it has springs, bars or multipliers: of one that
+// rests it is 1, however far its springs are from their lengths. At the start, and of a truth at rest, it is what
+// springs and hinges pull with that end at pins; rigid bars tell nothing there. NaN without pins or field, and where
+// the force of colliders is not told.
 double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                               const ck_Reference *reference);
 
