@@ -94,8 +94,8 @@ typedef void ck_LineSubstep(const struct ck_LinedCloth *cloth, bool is_last);
 // A row's flight there, where there are surfaces, and what those push the cloth by; see line_contact_loop.c.
 typedef void ck_LineFly(const struct ck_LinedCloth *cloth, int row, bool is_last);
 typedef void ck_LinePress(const struct ck_LinedCloth *cloth);
-// A sweep over packs of springs; see sweep_list_loop.h.
-typedef void ck_SweepPacks(const struct ck_SweepList *list, bool is_turned);
+// A sweep over packs of springs, from the first to before the end, as it comes to them; see sweep_list_loop.h.
+typedef void ck_SweepPacks(const struct ck_SweepList *list, int first, int end, bool is_turned);
 // Products with a sum each, as many as it can a second; returns how many there were.
 typedef long ck_Peak(long rounds, double *result);
 

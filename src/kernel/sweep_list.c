@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Rows, of fewer of which a second thread takes longer to hear of the first one's than it saves.
+#define LEAST_SHARED_ROWS 24
+
 // Springs of a pack, in the mean, at least.
 #define LEAST_FILL (CK_PACK / 4)
 
@@ -93,10 +96,12 @@ static bool schedule(ck_SweepList *list, const ck_Model *model, const ck_SweepRu
     return has_memory;
 }
 
+// Each row has a spare of its own, so that threads do not store to one.
 static void put_ends(ck_SweepList *list, const ck_Model *model) {
-    const uint32_t bytes = CK_POINT_BYTES, spare = (uint32_t)model->particle_count * bytes;
+    const uint32_t bytes = CK_POINT_BYTES;
     for (int i = 0; i < list->packs * CK_PACK; i++) {
         const ck_Spring *spring = list->order[i] >= 0 ? &model->springs[list->order[i]] : NULL;
+        const uint32_t spare = (uint32_t)(model->particle_count + i / CK_PACK / CK_ROW_PACKS) * bytes;
         list->ends[i / CK_PACK].a[i % CK_PACK] = spring ? (uint32_t)spring->a * bytes : spare;
         list->ends[i / CK_PACK].b[i % CK_PACK] = spring ? (uint32_t)spring->b * bytes : spare;
     }
@@ -137,8 +142,28 @@ static bool is_alike(const ck_Model *model, const ck_SweepRule *rule, ck_SweepVa
     return true;
 }
 
+// How many rows, and the farthest apart that two are which share a particle; false without memory. Turned round, too:
+// rows count from the other end then, and two packs may be in rows one further apart.
+static bool put_in_rows(ck_SweepList *list, const ck_Model *model) {
+    int *first = malloc(sizeof *first * (size_t)model->particle_count), farthest = 0;
+    if (!first) return false;
+    for (int i = 0; i < model->particle_count; i++) first[i] = -1;
+    for (int i = 0; i < list->packs * CK_PACK; i++)
+        for (int end = 0; end < 2 && list->order[i] >= 0; end++) {
+            const ck_Spring *spring = &model->springs[list->order[i]];
+            int *of = &first[end ? spring->b : spring->a];
+            if (*of < 0) *of = i / CK_PACK;
+            if (i / CK_PACK - *of > farthest) farthest = i / CK_PACK - *of;
+        }
+    free(first);
+    list->rows = (list->packs + CK_ROW_PACKS - 1) / CK_ROW_PACKS;
+    list->reach = (farthest + CK_ROW_PACKS - 1) / CK_ROW_PACKS;
+    if (list->reach < 1) list->reach = 1;
+    return true;
+}
+
 static bool allocate(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule) {
-    const size_t slots = (size_t)list->packs * CK_PACK, seats = CK_POINT * ((size_t)model->particle_count + 1);
+    const size_t slots = (size_t)list->packs * CK_PACK, seats = CK_POINT * (size_t)(model->particle_count + list->rows);
     bool has_memory = true;
     for (int value = 0; value < CK_SWEPT_VALUES; value++) {
         const bool alike = is_alike(model, rule, value);
@@ -191,7 +216,7 @@ ck_Status ck_sweep_list_create(ck_SweepList **out, const ck_Loops *loops, const 
         ck_sweep_list_destroy(list);
         return CK_OK;
     }
-    if (!has_memory || !allocate(list, model, rule)) {
+    if (!has_memory || !put_in_rows(list, model) || !allocate(list, model, rule)) {
         ck_sweep_list_destroy(list);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
@@ -215,8 +240,30 @@ void ck_sweep_list_begin(ck_SweepList *list, const double *position, const doubl
         memset(list->multiplier, 0, sizeof(double) * CK_PACK * (size_t)list->packs);
 }
 
-void ck_sweep_list_sweep(const ck_SweepList *list, bool is_turned) {
-    list->loops->sweep_packs(list, is_turned);
+typedef struct Sweeps {
+    const ck_SweepList *list;
+    bool are_turned;
+} Sweeps;
+
+static void sweep_row(void *state, long pass, int row) {
+    const Sweeps *sweeps = state;
+    const ck_SweepList *list = sweeps->list;
+    const int first = row * CK_ROW_PACKS, end = first + CK_ROW_PACKS;
+    (void)pass;
+    list->loops->sweep_packs(list, first, end < list->packs ? end : list->packs, sweeps->are_turned);
+}
+
+// Ends, values and multipliers of a row; and what particles it has more than the rows before.
+static size_t row_bytes(const ck_SweepList *list) {
+    size_t doubles = 1;
+    for (int value = 0; value < CK_SWEPT_VALUES; value++) doubles += list->values[value].step > 0;
+    return CK_ROW_PACKS * (sizeof(ck_Pack) + doubles * CK_PACK * sizeof(double)) +
+           2 * CK_POINT * sizeof(double) * (size_t)(list->particles / list->rows + 1);
+}
+
+void ck_sweep_list_sweep(const ck_SweepList *list, uint32_t count, bool are_turned, ck_Waves *waves) {
+    ck_passes_run(
+        waves, &(ck_Passes){sweep_row, &(Sweeps){list, are_turned}, count, list->rows, list->reach, row_bytes(list)});
 }
 
 void ck_sweep_list_read(const ck_SweepList *list, double *position) {

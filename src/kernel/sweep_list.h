@@ -8,6 +8,7 @@
 #include "model.h"
 #include "status.h"
 #include "sweep_order.h"
+#include "waves.h"
 
 typedef struct ck_SweepList ck_SweepList;
 
@@ -32,9 +33,10 @@ void ck_sweep_list_destroy(ck_SweepList *list);
 // Takes other values of the same model's springs and particles.
 void ck_sweep_list_set(ck_SweepList *list, const ck_Model *model, const ck_SweepRule *rule);
 
-// A substep: where particles are, and were at its start, [3*n] m; no multipliers yet. Then any number of sweeps.
+// A substep: where particles are, and were at its start, [3*n] m; no multipliers yet. Then any number of sweeps, which
+// threads share where there are several, with the same bits: each goes on where the one before is far enough.
 void ck_sweep_list_begin(ck_SweepList *list, const double *position, const double *start);
-void ck_sweep_list_sweep(const ck_SweepList *list, bool is_turned);
+void ck_sweep_list_sweep(const ck_SweepList *list, uint32_t count, bool are_turned, ck_Waves *waves);
 
 // Where they are now, [3*n] m, out; and where something else has put them, in.
 void ck_sweep_list_read(const ck_SweepList *list, double *position);

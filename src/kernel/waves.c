@@ -1,5 +1,7 @@
 #include "waves.h"
 
+#include "process.h"
+
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
@@ -18,6 +20,11 @@
 // Bytes that a core's second cache holds at least.
 #define LEAST_SECOND_CACHE (1 << 19)
 
+// s: less than a system lets others run for, once they have the processor.
+#define SLICE 0.002
+// The most jobs that are run alone after one in which a thread was not there.
+#define MOST_ALONE 1023
+
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
 typedef struct Worker {
@@ -34,12 +41,53 @@ struct ck_Waves {
     ck_WaveWork work;
     const ck_HalvesWork *halves; // NULL: the job is of waves
     bool stops;
-    Worker workers[]; // the first is the caller
+    double begun;          // s: this job
+    bool lost;             // in this job another thread did not run
+    int alone, most_alone; // jobs that are run alone yet, and how many so the last time
+    Worker workers[];      // the first is the caller
 };
 
 static void wait_for(Worker *worker, long done) {
     for (long looks = 0; atomic_load_explicit(&worker->done, memory_order_acquire) < done; looks++)
         if (looks >= LOOKS) sched_yield();
+}
+
+// The caller's wait for another thread, which is judged: longer than a system's slice of time and than all that the
+// caller did before, it is for one that does not run.
+static void wait_for_other(ck_Waves *waves, const Worker *worker, long done) {
+    double since = 0;
+    for (long looks = 0; atomic_load_explicit(&worker->done, memory_order_acquire) < done; looks++) {
+        if (looks < LOOKS) continue;
+        if (looks == LOOKS) since = ck_wall();
+        sched_yield();
+        waves->lost |= ck_wall() - since > SLICE + (since - waves->begun);
+    }
+}
+
+// Where others take the processors, each wait for a thread loses a slice of time: the next jobs are run alone, twice as
+// many each time, and half as many once threads are there again.
+static bool is_alone(ck_Waves *waves) {
+    if (!waves || waves->alone == 0) return !waves;
+    waves->alone--;
+    return true;
+}
+
+static void begin_job(ck_Waves *waves) {
+    waves->begun = ck_wall();
+    waves->lost = false;
+}
+
+static void end_job(ck_Waves *waves) {
+    waves->most_alone = waves->lost ? 2 * waves->most_alone + 1 : waves->most_alone / 2;
+    if (waves->most_alone > MOST_ALONE) waves->most_alone = MOST_ALONE;
+    waves->alone = waves->lost ? waves->most_alone : 0;
+}
+
+static void wait_as(ck_Waves *waves, int index, Worker *other, long done) {
+    if (index == 0)
+        wait_for_other(waves, other, done);
+    else
+        wait_for(other, done);
 }
 
 static int part_start(const ck_WaveWork *work, int parts, int part) {
@@ -55,7 +103,7 @@ static void run_part(ck_Waves *waves, int part) {
         if (part > 0) wait_for(self - 1, block * work.waves + first);
         for (int wave = first; wave < end; wave++) {
             int needed = wave + work.reach < work.waves ? wave + work.reach : work.waves - 1;
-            if (block > 0 && needed >= end) wait_for(self + 1, (block - 1) * work.waves + needed + 1);
+            if (block > 0 && needed >= end) wait_as(waves, part, self + 1, (block - 1) * work.waves + needed + 1);
             work.run(work.state, block, wave);
             // what the neighbours wait for; each time told takes the line away from one that looks
             if (wave < first + work.reach || wave + 1 == end)
@@ -71,7 +119,7 @@ static void run_half(ck_Waves *waves, int half) {
     for (long step = 0; step < work.steps; step++) {
         long needs = 0;
         const bool meets = work.meets(work.state, step, half, &needs);
-        if (meets) wait_for(other, needs);
+        if (meets) wait_as(waves, half, other, needs);
         work.run(work.state, step, half == 0, half == 1);
         if (meets) atomic_store_explicit(&self->done, step + 1, memory_order_release);
     }
@@ -110,6 +158,8 @@ ck_Status ck_waves_create(ck_Waves **out, int threads, ck_Error *error) {
     if (!waves) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     waves->threads = 1;
     waves->stops = false;
+    waves->alone = 0;
+    waves->most_alone = 0;
     atomic_init(&waves->workers[0].done, 0);
     for (int i = 1; i < threads; i++) {
         Worker *worker = &waves->workers[i];
@@ -184,11 +234,12 @@ void ck_passes_run(ck_Waves *waves, const ck_Passes *passes) {
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
     int parts = waves && work->blocks > 0 ? work->waves / (LEAST_PART * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
-    if (parts <= 1) {
+    if (parts <= 1 || is_alone(waves)) {
         for (long block = 0; block < work->blocks; block++)
             for (int wave = 0; wave < work->waves; wave++) work->run(work->state, block, wave);
         return;
     }
+    begin_job(waves);
     waves->work = *work;
     waves->halves = NULL;
     waves->parts = parts;
@@ -197,18 +248,21 @@ void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
     run_part(waves, 0);
     for (int i = 1; i < parts; i++) {
         const int end = part_start(work, parts, i + 1);
-        wait_for(&waves->workers[i], (work->blocks - 1) * work->waves + end);
+        wait_for_other(waves, &waves->workers[i], (work->blocks - 1) * work->waves + end);
     }
+    end_job(waves);
 }
 
 void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work) {
-    if (!waves) {
+    if (is_alone(waves)) {
         for (long step = 0; step < work->steps; step++) work->run(work->state, step, true, true);
         return;
     }
+    begin_job(waves);
     waves->halves = work;
     for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
     call(&waves->workers[1]);
     run_half(waves, 0);
-    wait_for(&waves->workers[1], work->steps);
+    wait_for_other(waves, &waves->workers[1], work->steps);
+    end_job(waves);
 }

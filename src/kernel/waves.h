@@ -57,7 +57,8 @@ void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work);
 
 // Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads. Cost: some atomic
 // stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1
-// ms.
+// ms. Where others take the processors, so that a thread is waited for that does not run, the caller does the next jobs
+// alone, which changes no result.
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work);
 
 #endif

@@ -106,7 +106,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "1",
-     .help = "threads that share a step, on regular cloths; two where a substep has several sweeps"},
+     .help = "threads that share a step where a substep has several sweeps: two on regular cloths, more on meshes"},
     CK_NATIVE_VECTORS_ROW,
     CK_NATIVE_SINGLE_ROW,
     {0},

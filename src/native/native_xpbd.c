@@ -255,7 +255,7 @@ static const ck_Setting settings[] = {
      .most = 64,
      .unit = "1",
      .rule = "1",
-     .help = "threads that share a step, on regular cloths"},
+     .help = "threads that share a step, on regular cloths, and on meshes where a substep has several sweeps"},
     CK_NATIVE_VECTORS_ROW,
     CK_NATIVE_SINGLE_ROW,
     {0},

@@ -77,11 +77,13 @@ void ck_native_sweep(ck_Native *native, ck_Projection projection, void (*sweep)(
     ck_SweepList *sweeps = native->sweeps;
     const bool is_alone = !between && !native->contact && !native->rigid;
     if (sweeps) ck_sweep_list_begin(sweeps, native->position, native->start);
-    for (uint32_t i = 0; i < native->iterations; i++) {
-        const bool is_turned = ck_sweep_is_turned(projection, i, native->iterations),
-                   is_last = i + 1 == native->iterations;
+    for (uint32_t i = 0, count; i < native->iterations; i += count) {
+        const bool is_turned = ck_sweep_is_turned(projection, i, native->iterations);
+        for (count = 1; sweeps && is_alone && i + count < native->iterations; count++)
+            if (ck_sweep_is_turned(projection, i + count, native->iterations) != is_turned) break;
+        const bool is_last = i + count == native->iterations;
         if (sweeps)
-            ck_sweep_list_sweep(sweeps, is_turned);
+            ck_sweep_list_sweep(sweeps, count, is_turned, native->waves);
         else
             sweep(native, is_turned);
         if (sweeps && (is_last || !is_alone)) ck_sweep_list_read(sweeps, native->position);

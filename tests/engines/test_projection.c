@@ -240,7 +240,7 @@ static void compare_list(const char *body, ck_Projection projection, uint32_t it
         for (int substep = 0; substep < 2; substep++) {
             ck_sweep_list_begin(list, moved, model->position);
             for (uint32_t i = 0; i < iterations; i++)
-                ck_sweep_list_sweep(list, ck_sweep_is_turned(projection, i, iterations));
+                ck_sweep_list_sweep(list, 1, ck_sweep_is_turned(projection, i, iterations), NULL);
         }
         ck_sweep_list_read(list, results[kind]);
         ck_sweep_list_destroy(list);

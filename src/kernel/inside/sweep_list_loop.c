@@ -124,10 +124,10 @@ CK_INLINE void project_bars(const ck_SweepList *list, Springs *springs) {
     move(list, springs);
 }
 
-CK_INLINE void sweep_packs(const ck_SweepList *list, bool is_turned, const int terms) {
-    for (int i = 0; i < list->packs; i++)
-        for (int first = 0; first < CK_PACK; first += SPRINGS) {
-            Springs springs = {.pack = is_turned ? list->packs - 1 - i : i, .first = first};
+CK_INLINE void sweep_packs(const ck_SweepList *list, int first, int end, bool is_turned, const int terms) {
+    for (int i = first; i < end; i++)
+        for (int lane = 0; lane < CK_PACK; lane += SPRINGS) {
+            Springs springs = {.pack = is_turned ? list->packs - 1 - i : i, .first = lane};
             if (terms & BARS)
                 project_bars(list, &springs);
             else
@@ -137,14 +137,14 @@ CK_INLINE void sweep_packs(const ck_SweepList *list, bool is_turned, const int t
 
 // The copy is known to share no memory with the arrays: what stands in it need not be read again after each store.
 ck_SweepPacks CK_LOOP(ck_sweep_packs);
-void CK_LOOP(ck_sweep_packs)(const ck_SweepList *shared, bool is_turned) {
+void CK_LOOP(ck_sweep_packs)(const ck_SweepList *shared, int first, int end, bool is_turned) {
     const ck_SweepList list = *shared;
     switch (list.terms) {
-    case BARS: sweep_packs(&list, is_turned, BARS); break;
-    case 0: sweep_packs(&list, is_turned, 0); break;
-    case DAMPED: sweep_packs(&list, is_turned, DAMPED); break;
-    case REPEATED: sweep_packs(&list, is_turned, REPEATED); break;
-    case REPEATED | DAMPED: sweep_packs(&list, is_turned, REPEATED | DAMPED); break;
-    default: sweep_packs(&list, is_turned, REPEATED | DAMPED | HANGS); break;
+    case BARS: sweep_packs(&list, first, end, is_turned, BARS); break;
+    case 0: sweep_packs(&list, first, end, is_turned, 0); break;
+    case DAMPED: sweep_packs(&list, first, end, is_turned, DAMPED); break;
+    case REPEATED: sweep_packs(&list, first, end, is_turned, REPEATED); break;
+    case REPEATED | DAMPED: sweep_packs(&list, first, end, is_turned, REPEATED | DAMPED); break;
+    default: sweep_packs(&list, first, end, is_turned, REPEATED | DAMPED | HANGS); break;
     }
 }

@@ -8,7 +8,10 @@
 // Springs that are worked on together.
 #define CK_PACK 16
 
-// The ends of a pack's springs. Where there are fewer, both ends are the spare particle.
+// Packs of a row: what a thread sweeps before it tells so.
+#define CK_ROW_PACKS 16
+
+// The ends of a pack's springs. Where there are fewer, both ends are its row's spare particle.
 typedef struct ck_Pack {
     uint32_t a[CK_PACK], b[CK_PACK]; // particles, times CK_POINT_BYTES
 } ck_Pack;
@@ -29,11 +32,12 @@ typedef enum ck_SweepValue {
 struct ck_SweepList {
     const ck_Loops *loops;
     int particles, packs, terms;
+    int rows, reach;                         // of packs, and how many further on one may share a particle with its own
     int *order;                              // [packs*CK_PACK] springs, -1 where there is none
     ck_Pack *ends;                           // [packs] bytes into x and start
     ck_SpringValues values[CK_SWEPT_VALUES]; // one for all where all are alike, or none has any
     double *multiplier;                      // [packs*CK_PACK] kg·m
-    double *x, *start;                       // [(particles + 1)*CK_POINT] m, the last spare
+    double *x, *start;                       // [(particles + rows)*CK_POINT] m, the last ones spare
     double *state;
 };
 
