@@ -11,23 +11,23 @@ static double rate_of(const ck_ProjectedCloth *cloth) {
     return cloth->rule.keep / cloth->rule.dt;
 }
 
-// m: of a number of [3*n].
-static double kept_at(const ck_ProjectedCloth *cloth, int number) {
+// Of a number of [3*n].
+static ck_Real *place_at(const ck_ProjectedCloth *cloth, ck_Real *tiles, int number) {
     const int particle = number / 3, columns = cloth->rows.columns;
-    return cloth->kept[ck_rows_at(&cloth->rows, particle / columns, particle % columns).tile + number % 3 * CK_STRIPE];
+    return tiles + ck_rows_at(&cloth->rows, particle / columns, particle % columns).tile + number % 3 * CK_STRIPE;
 }
 
 static void read_state(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
     const double rate = rate_of(cloth);
     static const double none[3];
     ck_rows_store(&cloth->rows, position, cloth->x, none);
-    ck_rows_store(&cloth->rows, velocity, cloth->from, none);
+    ck_rows_store(&cloth->rows, velocity, CK_IS_SINGLE ? cloth->kept : cloth->from, none);
     ck_rows_store(&cloth->rows, before, cloth->before, none);
     for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i++) {
         velocity[i] = rate * (position[i] - velocity[i]);
-        if (CK_IS_SINGLE) velocity[i] += rate * kept_at(cloth, i);
         before[i] *= rate;
         position[i] += cloth->origin[i % 3];
+        if (CK_IS_SINGLE) position[i] += *place_at(cloth, cloth->start, i);
     }
 }
 
@@ -113,17 +113,18 @@ static void mark_free(ck_ProjectedCloth *cloth, const double *inverse_mass) {
     }
 }
 
-// Places as they are, and as velocities say that they were.
+// Places as they are, and as velocities say that they were; in single precision ways, of which a place takes what its
+// digits reach.
 static void start_moving(ck_ProjectedCloth *cloth, const double *position, const double *velocity,
                          const double *before) {
     const double rate = rate_of(cloth);
-    static const double none[3];
-    ck_rows_load(&cloth->rows, cloth->x, position, cloth->origin);
-    ck_rows_load(&cloth->rows, cloth->start, velocity, none);
-    ck_rows_load(&cloth->rows, cloth->before, before, none);
-    for (size_t i = 0; i < 3 * cloth->rows.size; i++) {
-        cloth->start[i] = (ck_Real)(cloth->x[i] - cloth->start[i] / rate);
-        cloth->before[i] = (ck_Real)(cloth->before[i] / rate);
+    for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i++) {
+        const double x = position[i] - cloth->origin[i % 3], way = velocity[i] / rate;
+        ck_Real *start = place_at(cloth, cloth->start, i);
+        *start = (ck_Real)(CK_IS_SINGLE ? x : x - way);
+        *place_at(cloth, cloth->x, i) = (ck_Real)(CK_IS_SINGLE ? x - *start : x);
+        *place_at(cloth, cloth->before, i) = (ck_Real)(before[i] / rate);
+        if (CK_IS_SINGLE) *place_at(cloth, cloth->kept, i) = (ck_Real)(x - *start - way);
     }
 }
 

@@ -1,7 +1,6 @@
 // The layout of explicit.h for regular cloths. Compiled for either precision; see single.h.
 #include "explicit_kind.h"
 #include "spring_loop.h"
-#include "vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,12 +17,9 @@ static void run_row(void *state, long pass, int row) {
     cloth->loops->explicit_row(cloth, row, pass < cloth->substeps);
 }
 
-// The origin follows a cloth that has gone farther than it is wide.
 static void follow(ck_ExplicitCloth *cloth) {
     const ck_Real shift[] = {cloth->x[0], cloth->x[CK_STRIPE], cloth->x[2 * CK_STRIPE]};
-    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > cloth->size)) return;
-    ck_rows_shift(&cloth->rows, cloth->x, shift);
-    for (int axis = 0; axis < 3; axis++) cloth->origin[axis] += shift[axis];
+    if (ck_origin_follows(cloth->origin, shift, cloth->size)) ck_rows_shift(&cloth->rows, cloth->x, shift);
 }
 
 static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {

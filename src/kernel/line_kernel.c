@@ -2,7 +2,6 @@
 // see single.h.
 #include "line_loop.h"
 #include "row_contact.h"
-#include "vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,17 +34,11 @@ static void end_start(struct ck_LinedCloth *lined) {
     lined->is_fresh = NULL;
 }
 
-// The origin follows a cloth that has gone farther than it is wide.
 static void follow(struct ck_LinedCloth *lined) {
-    const ck_Real shift[] = {lined->x[0], lined->x[lined->plane], lined->x[2 * lined->plane]};
-    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > lined->size)) return;
-    for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
-        const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
-        lined->x[at] -= shift[i % 3];
-        lined->start[at] -= shift[i % 3];
-        lined->flown[at] -= shift[i % 3];
-    }
-    for (int axis = 0; axis < 3; axis++) lined->origin[axis] += shift[axis];
+    const ck_Real shift[] = {lined->start[0], lined->start[lined->plane], lined->start[2 * lined->plane]};
+    if (!ck_origin_follows(lined->origin, shift, lined->size)) return;
+    for (int i = 0; i < 3 * lined->rows * lined->columns; i++)
+        lined->start[place_of(lined, i / 3) + i % 3 * lined->plane] -= shift[i % 3];
 }
 
 static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
@@ -73,9 +66,12 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
     const double rate = lined->rule.keep / lined->rule.dt;
     for (int i = 0; i < 3 * lined->rows * lined->columns; i++) {
         const long at = place_of(lined, i / 3) + i % 3 * lined->plane;
+        const double begun = CK_IS_SINGLE          ? lined->begun[at]
+                             : lined->head.contact ? *from_at(lined, i / 3, i % 3)
+                                                   : lined->start[at];
         position[i] = lined->x[at] + lined->origin[i % 3];
-        velocity[i] = rate * (lined->x[at] - (lined->head.contact ? *from_at(lined, i / 3, i % 3) : lined->start[at]));
-        if (CK_IS_SINGLE) velocity[i] += rate * lined->lost[at];
+        if (CK_IS_SINGLE) position[i] += lined->start[at];
+        velocity[i] = rate * (lined->x[at] - begun);
         before[i] = rate * lined->before[at];
     }
 }
@@ -117,7 +113,7 @@ static bool allocate(struct ck_LinedCloth *lined) {
     lined->x = take(&next, 3 * lined->plane);
     lined->start = take(&next, 3 * lined->plane);
     lined->flown = take(&next, 3 * lined->plane);
-    lined->lost = take(&next, CK_IS_SINGLE ? 3 * lined->plane : 0);
+    lined->begun = take(&next, CK_IS_SINGLE ? 3 * lined->plane : 0);
     lined->weight = take(&next, lined->plane);
     lined->there = take(&next, lined->stride);
     lined->turned_weight = take(&next, columns * lined->turned_stride);
@@ -160,8 +156,11 @@ static void start_moving(struct ck_LinedCloth *lined, const ck_ProjectionSetup *
         lined->is_fresh[i] = setup->inverse_mass[i] > 0 && !goes_on;
         for (int axis = 0; axis < 3; axis++) {
             const long one = at + axis * lined->plane;
-            lined->x[one] = (ck_Real)(setup->position[3 * i + axis] - lined->origin[axis]);
-            lined->start[one] = (ck_Real)(lined->x[one] - setup->velocity[3 * i + axis] / rate);
+            const double x = setup->position[3 * i + axis] - lined->origin[axis],
+                         way = setup->velocity[3 * i + axis] / rate;
+            lined->start[one] = (ck_Real)(CK_IS_SINGLE ? x : x - way);
+            lined->x[one] = (ck_Real)(CK_IS_SINGLE ? x - lined->start[one] : x);
+            if (CK_IS_SINGLE) lined->begun[one] = (ck_Real)(x - lined->start[one] - way);
             lined->flown[one] = lined->x[one] - (goes_on ? last->x[one] - last->flown[one] : 0);
             lined->before[one] = (ck_Real)(setup->before[3 * i + axis] / rate);
         }

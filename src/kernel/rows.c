@@ -1,5 +1,6 @@
 // Compiled for either precision; see single.h.
 #include "rows.h"
+#include "vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,12 @@ void ck_rows_store(const ck_Rows *rows, double *vectors, const ck_Real *tiles, c
 void ck_rows_mark_paired(const ck_Rows *rows, int reach, ck_Real *paired) {
     for (int column = 0; column < rows->span * CK_STRIPE; column++)
         paired[ck_rows_at(rows, 0, column).single] = column + reach < rows->columns;
+}
+
+bool ck_origin_follows(double origin[3], const ck_Real shift[3], double size) {
+    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > size)) return false;
+    for (int axis = 0; axis < 3; axis++) origin[axis] += shift[axis];
+    return true;
 }
 
 void ck_rows_shift(const ck_Rows *rows, ck_Real *tiles, const ck_Real shift[3]) {

@@ -92,6 +92,11 @@ ck_Real *ck_rows_allocate(const ck_Rows *rows, int count);
 void ck_rows_load(const ck_Rows *rows, ck_Real *tiles, const double *vectors, const double origin[3]);
 void ck_rows_store(const ck_Rows *rows, double *vectors, const ck_Real *tiles, const double origin[3]);
 
+// The origin of what is told in single precision follows a cloth that has gone farther than it is wide. True where it
+// moves, by a shift that what is told from it is to lose.
+//   shift  [3] m: where the first particle is
+bool ck_origin_follows(double origin[3], const ck_Real shift[3], double size);
+
 // Tells tiles from another origin, by a shift, m, from theirs.
 void ck_rows_shift(const ck_Rows *rows, ck_Real *tiles, const ck_Real shift[3]);
 

@@ -7,6 +7,7 @@
 #define ck_rows_load ck_rows_load_single
 #define ck_rows_store ck_rows_store_single
 #define ck_rows_shift ck_rows_shift_single
+#define ck_origin_follows ck_origin_follows_single
 #define ck_rows_mark_paired ck_rows_mark_paired_single
 #define ck_explicit_rows ck_explicit_rows_single
 #define ck_projection_rows ck_projection_rows_single

@@ -1,7 +1,6 @@
 // The order in which the sweeps over a cloth's rows come to them: ck_projection_step. Compiled for either precision;
 // see single.h.
 #include "constraint_loop.h"
-#include "vector.h"
 
 // Rows between a sweep and the next: neither then touches the other's, which are its row and those beside it; and where
 // halves meet, the lower one comes to the row that they share up to two waves after the upper one.
@@ -190,13 +189,9 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
         waves, &(ck_HalvesWork){run_both_ways, meets_other, &ways, (long)substeps * (ways.waves[0] + ways.waves[1])});
 }
 
-// The origin follows a cloth that has gone farther than it is wide.
 static void follow(ck_ProjectedCloth *cloth) {
-    const ck_Real shift[] = {cloth->x[0], cloth->x[CK_STRIPE], cloth->x[2 * CK_STRIPE]};
-    if (!(ck_length((const double[]){shift[0], shift[1], shift[2]}) > cloth->size)) return;
-    ck_rows_shift(&cloth->rows, cloth->x, shift);
-    ck_rows_shift(&cloth->rows, cloth->start, shift);
-    for (int axis = 0; axis < 3; axis++) cloth->origin[axis] += shift[axis];
+    const ck_Real shift[] = {cloth->start[0], cloth->start[CK_STRIPE], cloth->start[2 * CK_STRIPE]};
+    if (ck_origin_follows(cloth->origin, shift, cloth->size)) ck_rows_shift(&cloth->rows, cloth->start, shift);
 }
 
 void ck_projection_run(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {

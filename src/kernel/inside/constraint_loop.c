@@ -55,6 +55,19 @@ CK_INLINE ck_Lanes3 span_of(const ck_Real *tiles, const Ends *ends) {
     return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
 }
 
+// In single precision x is told from where the substep starts: places are rounded to 6e-8 of the cloth's size, and the
+// ways of a substep to 6e-8 of themselves.
+CK_INLINE ck_Lanes3 span_now(const ck_ProjectedCloth *cloth, const Ends *ends) {
+    const ck_Lanes3 x = span_of(cloth->x, ends);
+    return CK_IS_SINGLE ? ck_lanes3_add(span_of(cloth->start, ends), x) : x;
+}
+
+// What ends have moved by against each other in this substep.
+CK_INLINE ck_Lanes3 span_moved(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes3 now) {
+    if (CK_IS_SINGLE) return ck_lanes3_subtract(span_of(cloth->x, ends), span_of(cloth->kept, ends));
+    return ck_lanes3_subtract(now, span_of(cloth->start, ends));
+}
+
 // s·(l² − L²)/(4·L²) of bars.
 CK_INLINE ck_Lanes scale_of(const Springs *springs, ck_Lanes squared) {
     return ck_lanes_plus(-springs->share_rest, springs->share, squared);
@@ -71,7 +84,7 @@ CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_La
 // registers are their own.
 static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs, bool held,
                                                   bool asks_all) {
-    const ck_Lanes3 now = span_of(cloth->x, &ends), start = span_of(cloth->start, &ends);
+    const ck_Lanes3 now = span_now(cloth, &ends), start = span_of(cloth->start, &ends);
     const ck_Lanes square = ck_lanes_all(cloth->rest[ends.kind] * cloth->rest[ends.kind]);
     const ck_Lanes along = ck_lanes3_dot(now, start), squared = ck_lanes3_dot(now, now);
     const ck_Lanes near = scale_of(&springs, squared);
@@ -89,7 +102,7 @@ static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth
 // row with a long bar is looked at bar by bar in the substep's further sweeps.
 CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, const ck_Visit *at,
                            const int terms) {
-    const ck_Lanes3 now = span_of(cloth->x, ends);
+    const ck_Lanes3 now = span_now(cloth, ends);
     const ck_Lanes scale = scale_of(springs, ck_lanes3_dot(now, now));
     if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0)) {
         cloth->far_from[at->row] = at->sweep + 1;
@@ -102,13 +115,13 @@ CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, con
 CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs,
                               const int terms) {
     const ck_Compliant *compliant = &cloth->compliant[ends->kind];
-    ck_Lanes3 now = span_of(cloth->x, ends);
+    ck_Lanes3 now = span_now(cloth, ends);
     ck_Lanes squared = ck_lanes3_dot(now, now), inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
     ck_Lanes share = springs->share, share_rest = springs->share_rest;
     if (terms & REPEATED) share_rest = ck_lanes_minus(share_rest, springs->softness, ck_lanes_load(ends->multiplier));
     if (terms & DAMPED) {
-        ck_Lanes3 moved = ck_lanes3_subtract(now, span_of(cloth->start, ends));
+        ck_Lanes3 moved = span_moved(cloth, ends, now);
         share_rest = ck_lanes_minus(share_rest, springs->viscosity * ck_lanes3_dot(moved, now), inverse);
     }
     ck_Lanes scale = ck_lanes_minus(share, share_rest, inverse);
@@ -219,21 +232,28 @@ CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Visit *vi
     }
 }
 
-// x ← x + carried·(x − x_start) + push;  x_start ← x as it was. Velocities are what positions have moved by; in single
-// precision with what rounding has kept a position from: of a short substep gravity's push is less than half a digit of
-// it.
-CK_INLINE void predict_vector(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
+// x ← x + carried·(x − x_start) + push;  x_start ← x as it was. Velocities are what positions have moved by.
+CK_INLINE void predict_wide(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
     const ck_Lanes free = ck_lanes_load(cloth->is_free + at.single);
     const ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile);
-    ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->from + at.tile));
-    if (CK_IS_SINGLE) moved = ck_lanes3_add(moved, ck_lanes3_load(cloth->kept + at.tile));
+    const ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->from + at.tile));
     const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved);
-    const ck_Lanes3 there = ck_lanes3_add_scaled(x, free, way);
     ck_lanes3_store(cloth->start + at.tile, x);
-    ck_lanes3_store(cloth->x + at.tile, there);
-    if (CK_IS_SINGLE)
-        ck_lanes3_store(cloth->kept + at.tile,
-                        ck_lanes3_subtract(ck_lanes3_scale(free, way), ck_lanes3_subtract(there, x)));
+    ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(x, free, way));
+    if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
+}
+
+// The same of ways: x_start takes x up, as far as its digits reach; x begins at what is left, which is kept.
+CK_INLINE void predict_way(const ck_ProjectedCloth *cloth, ck_Place at, bool is_last) {
+    const ck_Lanes free = ck_lanes_load(cloth->is_free + at.single);
+    const ck_Lanes3 x = ck_lanes3_load(cloth->x + at.tile), start = ck_lanes3_load(cloth->start + at.tile);
+    const ck_Lanes3 moved = ck_lanes3_subtract(x, ck_lanes3_load(cloth->kept + at.tile));
+    const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved);
+    const ck_Lanes3 there = ck_lanes3_add(start, x);
+    const ck_Lanes3 left = ck_lanes3_subtract(x, ck_lanes3_subtract(there, start));
+    ck_lanes3_store(cloth->start + at.tile, there);
+    ck_lanes3_store(cloth->kept + at.tile, left);
+    ck_lanes3_store(cloth->x + at.tile, ck_lanes3_add_scaled(left, free, way));
     if (is_last) ck_lanes3_store(cloth->before + at.tile, moved);
 }
 
@@ -262,7 +282,11 @@ CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last
     for (int i = 0; i < cloth->rows.span; i++)
         for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
             const ck_Place at = ck_rows_place(&cloth->rows, row, i);
-            predict_vector(cloth, (ck_Place){at.single + lane, at.tile + lane}, is_last);
+            const ck_Place part = {at.single + lane, at.tile + lane};
+            if (CK_IS_SINGLE)
+                predict_way(cloth, part, is_last);
+            else
+                predict_wide(cloth, part, is_last);
         }
     forget_multipliers(cloth, row);
 }

@@ -49,9 +49,9 @@ struct ck_ProjectedCloth {
     long sweeps;            // of this call
     int depth;              // of which so many run interleaved; of both ways: of those of one
     double size, origin[3]; // m, of the cloth; and, of both; 0 but in single precision
-    ck_Real *x, *start;     // tiles, m; start: before the last substep
+    ck_Real *x, *start;     // tiles, m; start: before the last substep; in single precision x is told from there
     ck_Real *from;          // m: where a way is measured from: start, but for impacts
-    ck_Real *kept;          // m, in single precision: what rounding took of the last way; else not there
+    ck_Real *kept;          // m, in single precision: where x began, as start's digits end; else not there
     ck_Real *before;        // m moved in the substep before the last one
     ck_Real *is_free;
     ck_Real *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none

@@ -36,7 +36,7 @@ typedef struct Node {
 CK_INLINE Node node_at(const Lines *lines, int row, const int terms) {
     Node node = {.x = load(lines->x + row * lines->step, lines->plane),
                  .weight = ck_lanes_load(lines->weight + row * lines->weight_step)};
-    if (terms & DAMPED) node.start = load(lines->start + row * lines->step, lines->plane);
+    if ((terms & DAMPED) || CK_IS_SINGLE) node.start = load(lines->start + row * lines->step, lines->plane);
     if (terms & SLANTED) node.there = ck_lanes_load(lines->there + (long)row * lines->slant);
     return node;
 }
@@ -57,7 +57,8 @@ CK_INLINE ck_Lanes residual_of(const Lines *lines, const Node *a, const Node *b,
         residual =
             ck_lanes_minus(residual, ck_lanes_all(springs->compliance), ck_lanes_load(lines->multiplier + multiplier));
     if (terms & DAMPED) {
-        const ck_Lanes3 moved = ck_lanes3_subtract(way, ck_lanes3_subtract(b->start, a->start));
+        const ck_Lanes3 moved = CK_IS_SINGLE ? ck_lanes3_subtract(b->x, a->x)
+                                             : ck_lanes3_subtract(way, ck_lanes3_subtract(b->start, a->start));
         residual = ck_lanes_minus(residual, ck_lanes_all(springs->gamma), ck_lanes3_dot(moved, normal));
     }
     return springs->share * residual;
@@ -67,7 +68,8 @@ CK_INLINE ck_Lanes residual_of(const Lines *lines, const Node *a, const Node *b,
 CK_INLINE Pivot eliminate(const Lines *lines, const Node *a, const Node *b, const Pivot *before, long multiplier,
                           const int terms) {
     Pivot pivot;
-    const ck_Lanes3 way = ck_lanes3_subtract(b->x, a->x);
+    ck_Lanes3 way = ck_lanes3_subtract(b->x, a->x);
+    if (CK_IS_SINGLE) way = ck_lanes3_add(ck_lanes3_subtract(b->start, a->start), way);
     ck_Lanes squared = ck_lanes3_dot(way, way), inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
     pivot.normal = ck_lanes3_scale(inverse, way);
@@ -275,30 +277,35 @@ CK_INLINE void solve_along(const struct ck_LinedCloth *cloth, int row, const int
                          .last = cloth->columns - 1,
                          .springs = cloth->springs[CK_LINES_ALONG]};
     turn_rows(cloth, cloth->tiles, cloth->x + first);
-    if (terms & DAMPED) turn_rows(cloth, cloth->start_tiles, cloth->start + first);
+    if ((terms & DAMPED) || CK_IS_SINGLE) turn_rows(cloth, cloth->start_tiles, cloth->start + first);
     solve(&lines, terms);
     turn_back(cloth, cloth->x + first, cloth->tiles);
 }
 
 // x̂ ← x + carried·(x − x_start) + push;  x ← x̂ + KEPT·(x − the last x̂);  x_start ← x as it was; of a row. In single
-// precision a way has what rounding has kept the last one from; see constraint_loop.c.
+// precision x_start takes up what its digits reach of x, which is told from there; see constraint_loop.c.
 CK_INLINE void predict(const struct ck_LinedCloth *cloth, int row, bool is_last) {
     const ck_Lanes carried = ck_lanes_all(cloth->carried), kept = ck_lanes_all(CK_LINES_KEPT), none = {0};
     for (int axis = 0; axis < 3; axis++) {
         const ck_Lanes gain = ck_lanes_all(cloth->push[axis]);
         const long first = row * cloth->stride, from = axis * cloth->plane + first;
         ck_Real *x = cloth->x + from, *start = cloth->start + from, *before = cloth->before + from,
-                *flown = cloth->flown + from, *lost = cloth->lost + from;
+                *flown = cloth->flown + from, *begun = CK_IS_SINGLE ? cloth->begun + from : start;
         for (long i = 0; i < cloth->columns; i += CK_LANES) {
-            const ck_Lanes there = ck_lanes_load(x + i), pulled = there - ck_lanes_load(flown + i);
+            const ck_Lanes now = ck_lanes_load(x + i), pulled = now - ck_lanes_load(flown + i),
+                           moved = now - ck_lanes_load(begun + i);
             const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(cloth->weight + first + i));
-            ck_Lanes moved = there - ck_lanes_load(start + i);
-            if (CK_IS_SINGLE) moved += ck_lanes_load(lost + i);
-            const ck_Lanes way = ck_lanes_plus(gain, carried, moved), flies = there + way;
-            if (CK_IS_SINGLE) ck_lanes_store(lost + i, ck_lanes_choose(is_free, way - (flies - there), none));
-            ck_lanes_store(flown + i, ck_lanes_choose(is_free, flies, there));
-            ck_lanes_store(x + i, ck_lanes_choose(is_free, ck_lanes_plus(flies, kept, pulled), there));
-            ck_lanes_store(start + i, there);
+            ck_Lanes begins = now, starts = now;
+            if (CK_IS_SINGLE) {
+                const ck_Lanes last = ck_lanes_load(start + i);
+                starts = last + now;
+                begins = now - (starts - last);
+                ck_lanes_store(begun + i, begins);
+            }
+            const ck_Lanes flies = begins + ck_lanes_plus(gain, carried, moved);
+            ck_lanes_store(flown + i, ck_lanes_choose(is_free, flies, begins));
+            ck_lanes_store(x + i, ck_lanes_choose(is_free, ck_lanes_plus(flies, kept, pulled), begins));
+            ck_lanes_store(start + i, starts);
             if (is_last) ck_lanes_store(before + i, moved);
         }
     }

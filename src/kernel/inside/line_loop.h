@@ -31,10 +31,11 @@ struct ck_LinedCloth {
     double size, origin[3];  // m, of the cloth; and, of its places; 0 but in single precision
     int terms, rows, columns;
     long stride, plane;                    // numbers from a row to the next, and from a coordinate to the next
-    ck_Real *x, *start;                    // planes, m, from the first particle on; start: before the last substep
+    ck_Real *x, *start;                    // planes, m, from the first particle on; start: before the last substep; in
+                                           // single precision x is told from there
     ck_Real *flown;                        // planes, m: where the last substep's flight ended, and surfaces pushed that
     bool *is_fresh;                        // [rows*columns] has just begun to move; NULL: none has
-    ck_Real *lost;                         // planes, m, in single precision: what rounding took of the last flight
+    ck_Real *begun;                        // planes, m, in single precision: where x began, as start's digits end
     ck_Real *before;                       // planes: m moved in the substep before the last one
     ck_Real *weight;                       // 1/kg; 0 where pinned, and beside
     ck_Real *there;                        // [columns] 1, and 0 beside
