@@ -364,7 +364,7 @@ ck_Status ck_answer_bench(ck_Answer *answer, const char *directory, ck_Error *er
     if (!status) ck_answer_table(answer, "bench", NULL, columns);
     for (int i = 0; i < table.row_count && !status; i++) {
         double value = ck_csv_number_of(&table, i, "value");
-        if (!strcmp(ck_csv_text_of(&table, i, "metric"), "round_trip"))
+        if (!strcmp(ck_csv_text_of(&table, i, "metric"), "round_trip") && !isnan(value))
             ck_answer_line(answer, CK_ANSWER_NOTE,
                            "%.0f ns from one thread to another and back: some 100 where processors share a cache, and "
                            "where it is 600, small bodies gain little from a second thread",

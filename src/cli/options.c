@@ -53,7 +53,8 @@ static const Option table[] = {
     {"set", "[ENGINE.]KEY=N", 's', CK_TAKES_RUNS, OTHER, .read = ck_arguments_add_setting,
      .help = "a setting of an engine, over the scene's own; 'clothcheck list ENGINE' tells them"},
     {"threads", "N", 't', CK_TAKES_RUNS, OTHER, .fallback = "1", .read = set_threads,
-     .help = "threads a step, where an engine can share one: regular cloths, and any springs of native-verlet"},
+     .help = "threads a step, where an engine can share one: regular cloths, any springs of native-verlet, and meshes "
+             "where a substep has several sweeps"},
     {"time-limit", "S", 0, CK_TAKES_RUNS | CK_TAKES_STUDY, NUMBER, PLACE(options.limits.seconds), 0, 1e9,
      .help = "wall seconds that one run may take"},
     {"memory-limit", "MIB", 0, CK_TAKES_RUNS | CK_TAKES_STUDY, OTHER, .fallback = "4096", .read = set_memory,

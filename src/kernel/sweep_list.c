@@ -262,8 +262,9 @@ static size_t row_bytes(const ck_SweepList *list) {
 }
 
 void ck_sweep_list_sweep(const ck_SweepList *list, uint32_t count, bool are_turned, ck_Waves *waves) {
-    ck_passes_run(
-        waves, &(ck_Passes){sweep_row, &(Sweeps){list, are_turned}, count, list->rows, list->reach, row_bytes(list)});
+    Sweeps sweeps = {list, are_turned};
+    const ck_Passes passes = {sweep_row, &sweeps, count, list->rows, list->reach, row_bytes(list)};
+    ck_passes_run(list->rows < LEAST_SHARED_ROWS ? NULL : waves, &passes);
 }
 
 void ck_sweep_list_read(const ck_SweepList *list, double *position) {

@@ -20,7 +20,7 @@
 // Bytes that a core's second cache holds at least.
 #define LEAST_SECOND_CACHE (1 << 19)
 
-// s: less than a system lets others run for, once they have the processor.
+// s: less than the slice of time that a system gives others, once they have the processor.
 #define SLICE 0.002
 // The most jobs that are run alone after one in which a thread was not there.
 #define MOST_ALONE 1023
@@ -52,20 +52,24 @@ static void wait_for(Worker *worker, long done) {
         if (looks >= LOOKS) sched_yield();
 }
 
-// The caller's wait for another thread, which is judged: longer than a system's slice of time and than all that the
-// caller did before, it is for one that does not run.
+// The caller's wait for another thread, which is judged: where that tells of nothing for longer than SLICE and all the
+// time that the job has taken, it does not run.
 static void wait_for_other(ck_Waves *waves, const Worker *worker, long done) {
     double since = 0;
-    for (long looks = 0; atomic_load_explicit(&worker->done, memory_order_acquire) < done; looks++) {
+    long told = -1;
+    for (long looks = 0;; looks++) {
+        const long now = atomic_load_explicit(&worker->done, memory_order_acquire);
+        if (now >= done) return;
         if (looks < LOOKS) continue;
-        if (looks == LOOKS) since = ck_wall();
+        if (now != told) since = ck_wall();
+        told = now;
         sched_yield();
         waves->lost |= ck_wall() - since > SLICE + (since - waves->begun);
     }
 }
 
-// Where others take the processors, each wait for a thread loses a slice of time: the next jobs are run alone, twice as
-// many each time, and half as many once threads are there again.
+// Where others take the processors, each wait for a thread may lose a slice of time: the next jobs are run alone, twice
+// as many each time, and half as many once threads are there again.
 static bool is_alone(ck_Waves *waves) {
     if (!waves || waves->alone == 0) return !waves;
     waves->alone--;
@@ -75,6 +79,10 @@ static bool is_alone(ck_Waves *waves) {
 static void begin_job(ck_Waves *waves) {
     waves->begun = ck_wall();
     waves->lost = false;
+}
+
+bool ck_waves_are_shared(const ck_Waves *waves) {
+    return waves && waves->alone == 0;
 }
 
 static void end_job(ck_Waves *waves) {
@@ -121,7 +129,8 @@ static void run_half(ck_Waves *waves, int half) {
         const bool meets = work.meets(work.state, step, half, &needs);
         if (meets) wait_as(waves, half, other, needs);
         work.run(work.state, step, half == 0, half == 1);
-        if (meets) atomic_store_explicit(&self->done, step + 1, memory_order_release);
+        // the last one is told once: the caller may then begin another job
+        if (meets && step + 1 < work.steps) atomic_store_explicit(&self->done, step + 1, memory_order_release);
     }
     atomic_store_explicit(&self->done, work.steps, memory_order_release);
 }
@@ -232,7 +241,7 @@ void ck_passes_run(ck_Waves *waves, const ck_Passes *passes) {
 }
 
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
-    int parts = waves && work->blocks > 0 ? work->waves / (LEAST_PART * work->reach) : 1;
+    int parts = waves && work->blocks > 1 ? work->waves / (LEAST_PART * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
     if (parts <= 1 || is_alone(waves)) {
         for (long block = 0; block < work->blocks; block++)

@@ -26,6 +26,9 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
+// True where the next job is for all threads: see ck_waves_run.
+bool ck_waves_are_shared(const ck_Waves *waves);
+
 // How many passes over rows of so many bytes a block should hold, each lag rows behind the one before, at least 1. A
 // cloth that a second cache cannot hold comes to it once a block: as many as keep half of it busy. With several threads
 // there are to be eight blocks, as the others wait while the first is in its first one, and parts enough for all.
@@ -55,10 +58,10 @@ typedef struct ck_HalvesWork {
 // Returns when all is done, by one thread or by two.
 void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work);
 
-// Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads. Cost: some atomic
-// stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps after 0.1
-// ms. Where others take the processors, so that a thread is waited for that does not run, the caller does the next jobs
-// alone, which changes no result.
+// Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads, and one block to one. Cost:
+// some atomic stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps
+// after 0.1 ms. Where others take the processors, so that a thread is waited for that does not run, the caller does the
+// next jobs alone, which changes no result.
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work);
 
 #endif

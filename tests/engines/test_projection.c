@@ -4,7 +4,7 @@
 
 #include "constraint_kernel.h"
 #include "springs.h"
-#include "sweep_list.h"
+#include "sweep_list_loop.h"
 #include "sweep_order.h"
 #include "vector.h"
 
@@ -288,6 +288,77 @@ static void test_list(void **state) {
                  CK_PROJECT_SPRINGS, 2, false);
 }
 
+// A net of triangles, in the order of its nodes. Free with free.
+static char *write_net(int side) {
+    char *text;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    fprintf(file, "name: net\nnetwork:\n  nodes:\n");
+    for (int i = 0; i < side * side; i++)
+        fprintf(file, "    - {at: [%g, 0, %g], mass: 1e-3}\n", 0.02 * (i % side), 0.02 * (i / side));
+    fprintf(file, "  bars: [[0, 1]");
+    for (int i = 0; i < side * side; i++) {
+        const bool has_right = i % side + 1 < side, has_below = i / side + 1 < side;
+        if (has_right && i > 0) fprintf(file, ", [%d, %d]", i, i + 1);
+        if (has_below) fprintf(file, ", [%d, %d]", i, i + side);
+        if (has_right && has_below) fprintf(file, ", [%d, %d]", i, i + side + 1);
+    }
+    fprintf(file, "]\nsprings: {stiffness: 200, damping: 0.01}\npins: [0, %d]\ngravity: [0, -9.81, 0]\n", side - 1);
+    fprintf(file, "time: {duration: 1, step: 0.01}\n");
+    fclose(file);
+    return text;
+}
+
+// The places after sweeps of so many threads, [3*n] m; how many parts the net has for them.
+static int sweep_net(const ck_Model *model, ck_Projection projection, int threads, bool are_turned, double *x) {
+    const size_t count = 3 * (size_t)model->particle_count, springs = (size_t)model->spring_count;
+    double *weight = calloc((size_t)model->particle_count, sizeof *weight), *soft = calloc(2 * springs, sizeof *soft);
+    for (size_t i = 0; i < count; i++) x[i] = model->position[i] + 1e-3 * sin(1.7 * (double)i);
+    for (int i = 0; i < model->particle_count; i++) weight[i] = ck_model_inverse_mass(model, i);
+    for (size_t i = 0; i < springs; i++) soft[i] = 100, soft[springs + i] = 0.1;
+    const ck_SweepRule rule = {projection, 5, 1, weight, soft, soft + springs};
+    ck_SweepList *list;
+    ck_Waves *waves;
+    assert_int_equal(ck_sweep_list_create(&list, ck_loops_at(0), model, &rule, NULL), CK_OK);
+    assert_non_null(list);
+    assert_int_equal(ck_waves_create(&waves, threads, NULL), CK_OK);
+    for (int substep = 0; substep < 20; substep++) {
+        ck_sweep_list_begin(list, x, model->position);
+        ck_sweep_list_sweep(list, 5, are_turned, waves);
+        ck_sweep_list_read(list, x);
+    }
+    const int parts = list->rows / (3 * list->reach);
+    ck_waves_destroy(waves);
+    ck_sweep_list_destroy(list);
+    free(weight);
+    free(soft);
+    return parts;
+}
+
+// Threads share several sweeps over a net, either way round, and leave the same bits.
+static void test_shared_list(void **state) {
+    (void)state;
+    static const ck_Projection projections[] = {CK_PROJECT_SPRINGS, CK_PROJECT_BARS};
+    char *text = write_net(60);
+    Fixture fixture;
+    fixture_load(&fixture, text);
+    const size_t bytes = 3 * sizeof(double) * (size_t)fixture.model.particle_count;
+    double *one = malloc(bytes), *many = malloc(bytes);
+    for (int i = 0; i < 2; i++)
+        for (int is_turned = 0; is_turned < 2; is_turned++) {
+            sweep_net(&fixture.model, projections[i], 1, is_turned, one);
+            for (int threads = 2; threads < 4; threads++) {
+                const int parts = sweep_net(&fixture.model, projections[i], threads, is_turned, many);
+                if (parts < 2) fail_msg("only %d part: nothing is shared", parts);
+                assert_memory_equal(one, many, bytes);
+            }
+        }
+    free(one);
+    free(many);
+    free(text);
+    fixture_free(&fixture);
+}
+
 // The rms speed at the end, m/s.
 static double end_speed(const char *text, const ck_Settings *settings) {
     Fixture fixture;
@@ -364,9 +435,9 @@ static void test_order_of_lines(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection),    cmocka_unit_test(test_lines),
-                                       cmocka_unit_test(test_far_bars),      cmocka_unit_test(test_torn_bars),
-                                       cmocka_unit_test(test_list),          cmocka_unit_test(test_rest),
-                                       cmocka_unit_test(test_order_of_lines)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection), cmocka_unit_test(test_lines),
+                                       cmocka_unit_test(test_far_bars),   cmocka_unit_test(test_torn_bars),
+                                       cmocka_unit_test(test_list),       cmocka_unit_test(test_shared_list),
+                                       cmocka_unit_test(test_rest),       cmocka_unit_test(test_order_of_lines)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -270,6 +270,49 @@ static void test_force_of_the_solver(void **state) {
     }
 }
 
+// A cloth that is held by its edge and lies on the floor with the rest: what pins and floor bear is the weight. Where
+// an engine tells no force of the floor, or of parts of a frame alone, and where a scene changes, the pins' is not
+// known, at no frame.
+static void test_pins_beside_a_floor(void **state) {
+    (void)state;
+    static const struct {
+        const char *engine, *more;
+        bool is_known;
+    } cases[] = {{"native-verlet", "", true},
+                 {"ode-direct", "", true},
+                 {"bullet-pbd", "", false},
+                 {"native-verlet", "jitter: 0.3", false},
+                 {"native-verlet", "changes", false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        TruthFixture fixture;
+        ck_Trajectory path;
+        char text[800];
+        const bool changes = !strcmp(cases[i].more, "changes");
+        snprintf(text, sizeof text,
+                 "name: floor\ncloth: {rows: 5, columns: 5, spacing: 0.1, mass: 0.1, origin: [0, 0.1, 0], down: "
+                 "[0, 0, 1]}\nsprings: {stiffness: 50, shear: 25, damping: 0.02}\npins: [top_edge]\ngravity: [0, "
+                 "-9.81, 0]\ndrag: 4\n%stime: {duration: 4, fps: 30%s%s}\n",
+                 changes ? "changes: [{at: 2, set: '@gravity=[0, -5, 0]'}]\n"
+                         : "colliders: [{plane: {point: [0, 0, 0], normal: [0, 1, 0]}}]\n",
+                 *cases[i].more && !changes ? ", " : "", changes ? "" : cases[i].more);
+        fixture_load_truth(&fixture, text);
+        fixture_run(&path, &fixture.model, ck_engine_find(cases[i].engine), NULL, NULL);
+        const double force = metric_of(&fixture, &path, "pin_force"),
+                     most = metric_of(&fixture, &path, "pin_force_peak");
+        if (cases[i].is_known != !isnan(force) || cases[i].is_known != !isnan(most))
+            fail_msg("%s %s: %g, at most %g", cases[i].engine, cases[i].more, force, most);
+        if (cases[i].is_known) {
+            const double weight = ck_model_free_mass(&fixture.model) * 9.81,
+                         floor = path.contact[3 * (path.frame_count - 1) + 1] / weight;
+            assert_true(floor > 0.1);
+            // nothing pulls aside on what lies without friction
+            assert_near(cases[i].engine, force + floor, 1, 1e-3);
+        }
+        ck_trajectory_free(&path);
+        fixture_free_truth(&fixture);
+    }
+}
+
 // A cloth that lies on the floor is all on it; one that is moved into it by three spacings is inside as long.
 static void test_on_the_floor(void **state) {
     (void)state;
@@ -298,6 +341,7 @@ int main(void) {
         cmocka_unit_test(test_pins_hold_the_weight),
         cmocka_unit_test(test_momentum_tells_the_pins),
         cmocka_unit_test(test_force_of_the_solver),
+        cmocka_unit_test(test_pins_beside_a_floor),
         cmocka_unit_test(test_on_the_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -48,7 +48,8 @@ typedef struct Pivot {
     ck_Lanes longer, inverse, share, there;
 } Pivot;
 
-// −C − α̃·λ − γ̃·∇C·(x − x_start), over 1 + γ̃.
+// −C − α̃·λ − γ̃·∇C·(x − x_start), over 1 + γ̃. In single precision x is told from x_start, to the digits that it begins
+// with, half of a place's last one: at 1280 substeps a frame what dampers take that for is 5e-7 of a spring's length.
 CK_INLINE ck_Lanes residual_of(const Lines *lines, const Node *a, const Node *b, ck_Lanes3 way, ck_Lanes3 normal,
                                ck_Lanes length, long multiplier, const int terms) {
     const ck_LineSprings *springs = &lines->springs;

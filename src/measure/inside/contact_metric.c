@@ -308,7 +308,9 @@ double ck_metric_contact_force_over(const ck_Model *model, const ck_Trajectory *
     for (int i = 0; i < model->release_count; i++) released += model->releases[i].particle_count;
     ck_model_mean_field(model, field);
     double strength = ck_length(field);
-    if (!trajectory->contact || released < model->pin_count || !(strength > 0)) return NAN;
+    // of frames in parts an engine tells the last part's
+    if (!trajectory->contact || (model->terms & CK_TERM_JITTER) || released < model->pin_count || !(strength > 0))
+        return NAN;
     for (int i = 0; i < model->particle_count; i++)
         if (model->pinned[i]) weight += model->mass[i];
     for (int frame = first; frame <= last; frame++)

@@ -5,8 +5,8 @@
 #include "vector.h"
 #include "wind.h"
 
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 double ck_metric_tension_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                             const ck_Reference *reference) {
@@ -34,71 +34,89 @@ static void add_pull(const ck_Spring *spring, const double *position, const doub
 }
 
 // The hinges' part of the force on pins; false without memory.
-static bool add_hinges(const ck_Model *model, const double *position, double *force) {
+static bool add_hinges(const ck_Model *model, const double *position, const bool *is_free, double *force) {
     if (!model->hinge_count) return true;
     double *all = calloc(3 * (size_t)model->particle_count, sizeof *all);
     if (!all) return false;
     ck_hinges_add_force(model, position, 1, NULL, all);
     for (int i = 0; i < model->particle_count; i++)
-        if (ck_model_is_held(model, i)) ck_add_scaled(force, 1, all + 3 * i);
+        if (!is_free[i]) ck_add_scaled(force, 1, all + 3 * i);
     free(all);
     return true;
 }
 
-// By the springs and hinges that end at pins that stay, N.
-static bool pull_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, double *force) {
+// By the springs and hinges that end at pins, N.
+static bool pull_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const bool *is_free,
+                    double *force) {
     const double *position = ck_trajectory_position(trajectory, frame),
                  *velocity = ck_trajectory_velocity(trajectory, frame);
     for (int i = 0; i < model->spring_count; i++) {
         const ck_Spring *spring = &model->springs[i];
-        const bool a = ck_model_is_held(model, spring->a), b = ck_model_is_held(model, spring->b);
-        if (a && !b) add_pull(spring, position, velocity, 1, force);
-        if (b && !a) add_pull(spring, position, velocity, -1, force);
+        if (is_free[spring->a] == is_free[spring->b]) continue;
+        add_pull(spring, position, velocity, is_free[spring->b] ? 1 : -1, force);
     }
-    return add_hinges(model, position, force);
-}
-
-// True where no pin holds a particle in the frame that ends here: pins are let go between frames.
-static bool is_free_before(const ck_Model *model, int particle, int frame) {
-    return !model->pinned[particle] || ck_model_release_time(model, particle) < (frame - 0.5) * model->step;
+    return add_hinges(model, position, is_free, force);
 }
 
 // Adds a share of the force of air on what is free, N; false without memory.
-static bool add_wind(const ck_Model *model, const ck_Trajectory *trajectory, int frame, int until, double share,
-                     double *force) {
+static bool add_wind(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const bool *is_free,
+                     double share, double *force) {
     if (!model->wind.face_count) return true;
     double *all = calloc(3 * (size_t)model->particle_count, sizeof *all);
     if (!all) return false;
     ck_wind_add_force(model, ck_trajectory_position(trajectory, frame), ck_trajectory_velocity(trajectory, frame), NULL,
                       all);
     for (int i = 0; i < model->particle_count; i++)
-        if (is_free_before(model, i, until)) ck_add_scaled(force, share, all + 3 * i);
+        if (is_free[i]) ck_add_scaled(force, share, all + 3 * i);
     free(all);
     return true;
 }
 
 // By what is free, N: of all that drove it over the last frame, the part that is not in its momentum. Air by the mean
-// of both ends, of second order in the frame; the rest is exact of any solver whose forces within the body cancel.
-static bool balance_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, double *force) {
+// of both ends, of second order in the frame; the rest is exact of any solver whose forces within the body cancel, and
+// whose drag is the scene's.
+static bool balance_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const bool *is_free,
+                       double *force) {
     const double *now = ck_trajectory_position(trajectory, frame),
                  *before = ck_trajectory_position(trajectory, frame - 1),
                  *v_now = ck_trajectory_velocity(trajectory, frame),
                  *v_before = ck_trajectory_velocity(trajectory, frame - 1);
-    if (model->collider_count && !trajectory->contact) return false;
     for (int i = 0; i < model->particle_count; i++) {
-        if (!is_free_before(model, i, frame)) continue;
+        if (!is_free[i]) continue;
         double field[3];
         ck_model_field(model, i, field);
         for (int axis = 0; axis < 3; axis++) {
             const int at = 3 * i + axis;
-            force[axis] +=
-                model->mass[i] *
-                (field[axis] - (v_now[at] - v_before[at] + model->drag * (now[at] - before[at])) / trajectory->step);
+            const double taken = v_now[at] - v_before[at] + model->drag * (now[at] - before[at]);
+            force[axis] += model->mass[i] * (field[axis] - taken / trajectory->step);
         }
     }
-    if (model->collider_count) ck_add_scaled(force, 1, trajectory->contact + 3 * frame);
-    return add_wind(model, trajectory, frame, frame, 0.5, force) &&
-           add_wind(model, trajectory, frame - 1, frame, 0.5, force);
+    if (model->collider_count) ck_add_scaled(force, 1, trajectory->contact + 3 * (size_t)frame);
+    return add_wind(model, trajectory, frame, is_free, 0.5, force) &&
+           add_wind(model, trajectory, frame - 1, is_free, 0.5, force);
+}
+
+// Those that no pin holds in the frame that ends here, [n]: pins are let go between frames. At the start those that
+// none has; of a path of one state, a rest, those that none keeps. NULL without memory.
+static bool *find_free(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+    bool *is_free = malloc((size_t)model->particle_count + 1);
+    if (!is_free) return NULL;
+    for (int i = 0; i < model->particle_count; i++) is_free[i] = !model->pinned[i];
+    for (int i = 0; i < model->release_count; i++) {
+        const ck_Release *release = &model->releases[i];
+        for (int k = 0; k < release->particle_count; k++)
+            if (release->frame < frame || trajectory->frame_count == 1) is_free[release->particles[k]] = true;
+    }
+    return is_free;
+}
+
+// What a scene changes into is not known here; nor is a collider's force where an engine tells none, as is seen after
+// the first frame, or where frames come in parts, of which it tells the last.
+static bool is_known(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+    if (frame == 0 && (model->terms & CK_TERM_RIGID)) return false;
+    if (model->segment_count) return false;
+    if (!model->collider_count || trajectory->frame_count == 1) return true;
+    return trajectory->contact && !isnan(trajectory->contact[3]) && !(model->terms & CK_TERM_JITTER);
 }
 
 double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
@@ -109,8 +127,10 @@ double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajec
     ck_model_mean_field(model, field);
     const double weight = ck_model_free_mass(model) * ck_length(field);
     for (int i = 0; i < model->particle_count; i++) holds |= ck_model_is_held(model, i);
-    if (!holds || !(weight > 0) || (frame == 0 && (model->terms & CK_TERM_RIGID))) return NAN;
-    const bool is_told =
-        frame == 0 ? pull_at(model, trajectory, frame, force) : balance_at(model, trajectory, frame, force);
+    if (!holds || !(weight > 0) || !is_known(model, trajectory, frame)) return NAN;
+    bool *is_free = find_free(model, trajectory, frame);
+    const bool is_told = is_free && (frame == 0 ? pull_at(model, trajectory, frame, is_free, force)
+                                                : balance_at(model, trajectory, frame, is_free, force));
+    free(is_free);
     return is_told ? ck_length(force) / weight : NAN;
 }
