@@ -26,6 +26,7 @@ static void step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     cloth->substeps = substeps;
     // a row reads those below it as the pass before left them
+    if (!ck_rows_are_shared(&cloth->rows)) waves = NULL;
     ck_passes_run(waves, &(ck_Passes){run_row, cloth, substeps + 1L, cloth->rows.rows,
                                       cloth->terms & CK_ROW_BENT ? 2 : 1, 12 * sizeof(ck_Real) * cloth->rows.stride});
     if (CK_IS_SINGLE) follow(cloth);

@@ -60,6 +60,7 @@ static void run_down(void *state, long block, int wave) {
 
 static void step_down(ck_ProjectedCloth *cloth, ck_Waves *waves) {
     const ck_Rows *rows = &cloth->rows;
+    if (!ck_rows_are_shared(rows)) waves = NULL;
     const int depth = ck_waves_depth(waves, cloth->sweeps, rows->rows, LAG, row_bytes(cloth));
     cloth->depth = at_most(at_least(depth, waves || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH), CK_MOST_VISITS);
     // a block's first sweep reads the row below it as the last sweep of the block before left it

@@ -108,7 +108,7 @@ static void test_bits(void **state) {
     for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
         char text[600];
         ck_Trajectory wide, narrow, shared;
-        write_scene(text, "", "pins: [top_left, top_right]\n", 37);
+        write_scene(text, "", "pins: [top_left, top_right]\n", 80);
         ck_Settings settings = settings_of(steps[i], true, 0);
         run(&wide, text, engines[i], &settings);
         settings.threads = 3;
