@@ -47,30 +47,25 @@ struct ck_Waves {
     Worker workers[];      // the first is the caller
 };
 
-static void wait_for(Worker *worker, long done) {
-    for (long looks = 0; atomic_load_explicit(&worker->done, memory_order_acquire) < done; looks++)
-        if (looks >= LOOKS) sched_yield();
-}
-
-// The caller's wait for another thread, which is judged: where that tells of nothing for longer than SLICE and all the
-// time that the job has taken, it does not run.
-static void wait_for_other(ck_Waves *waves, const Worker *worker, long done) {
+// A thread's wait for another one. The caller, the first thread, judges it: where the other tells of nothing for longer
+// than SLICE and all the time that the job has taken, it does not run.
+static void wait_for(ck_Waves *waves, int index, const Worker *other, long done) {
     double since = 0;
     long told = -1;
     for (long looks = 0;; looks++) {
-        const long now = atomic_load_explicit(&worker->done, memory_order_acquire);
+        const long now = atomic_load_explicit(&other->done, memory_order_acquire);
         if (now >= done) return;
         if (looks < LOOKS) continue;
         if (now != told) since = ck_wall();
         told = now;
         sched_yield();
-        waves->lost |= ck_wall() - since > SLICE + (since - waves->begun);
+        if (index == 0) waves->lost |= ck_wall() - since > SLICE + (since - waves->begun);
     }
 }
 
 // Where others take the processors, each wait for a thread may lose a slice of time: the next jobs are run alone, twice
-// as many each time, and half as many once threads are there again.
-static bool is_alone(ck_Waves *waves) {
+// as many each time, and half as many once threads are there again. True where this one is; it is counted.
+static bool take_alone(ck_Waves *waves) {
     if (!waves || waves->alone == 0) return !waves;
     waves->alone--;
     return true;
@@ -91,13 +86,6 @@ static void end_job(ck_Waves *waves) {
     waves->alone = waves->lost ? waves->most_alone : 0;
 }
 
-static void wait_as(ck_Waves *waves, int index, Worker *other, long done) {
-    if (index == 0)
-        wait_for_other(waves, other, done);
-    else
-        wait_for(other, done);
-}
-
 static int part_start(const ck_WaveWork *work, int parts, int part) {
     return (int)((long)work->waves * part / parts);
 }
@@ -108,10 +96,10 @@ static void run_part(ck_Waves *waves, int part) {
     const int first = part_start(&work, waves->parts, part), end = part_start(&work, waves->parts, part + 1);
     Worker *self = &waves->workers[part];
     for (long block = 0; block < work.blocks; block++) {
-        if (part > 0) wait_for(self - 1, block * work.waves + first);
+        if (part > 0) wait_for(waves, part, self - 1, block * work.waves + first);
         for (int wave = first; wave < end; wave++) {
             int needed = wave + work.reach < work.waves ? wave + work.reach : work.waves - 1;
-            if (block > 0 && needed >= end) wait_as(waves, part, self + 1, (block - 1) * work.waves + needed + 1);
+            if (block > 0 && needed >= end) wait_for(waves, part, self + 1, (block - 1) * work.waves + needed + 1);
             work.run(work.state, block, wave);
             // what the neighbours wait for; each time told takes the line away from one that looks
             if (wave < first + work.reach || wave + 1 == end)
@@ -127,7 +115,7 @@ static void run_half(ck_Waves *waves, int half) {
     for (long step = 0; step < work.steps; step++) {
         long needs = 0;
         const bool meets = work.meets(work.state, step, half, &needs);
-        if (meets) wait_as(waves, half, other, needs);
+        if (meets) wait_for(waves, half, other, needs);
         work.run(work.state, step, half == 0, half == 1);
         // the last one is told once: the caller may then begin another job
         if (meets && step + 1 < work.steps) atomic_store_explicit(&self->done, step + 1, memory_order_release);
@@ -243,7 +231,7 @@ void ck_passes_run(ck_Waves *waves, const ck_Passes *passes) {
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
     int parts = waves && work->blocks > 1 ? work->waves / (LEAST_PART * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
-    if (parts <= 1 || is_alone(waves)) {
+    if (parts <= 1 || take_alone(waves)) {
         for (long block = 0; block < work->blocks; block++)
             for (int wave = 0; wave < work->waves; wave++) work->run(work->state, block, wave);
         return;
@@ -257,13 +245,13 @@ void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
     run_part(waves, 0);
     for (int i = 1; i < parts; i++) {
         const int end = part_start(work, parts, i + 1);
-        wait_for_other(waves, &waves->workers[i], (work->blocks - 1) * work->waves + end);
+        wait_for(waves, 0, &waves->workers[i], (work->blocks - 1) * work->waves + end);
     }
     end_job(waves);
 }
 
 void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work) {
-    if (is_alone(waves)) {
+    if (take_alone(waves)) {
         for (long step = 0; step < work->steps; step++) work->run(work->state, step, true, true);
         return;
     }
@@ -272,6 +260,6 @@ void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work) {
     for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
     call(&waves->workers[1]);
     run_half(waves, 0);
-    wait_for_other(waves, &waves->workers[1], work->steps);
+    wait_for(waves, 0, &waves->workers[1], work->steps);
     end_job(waves);
 }
