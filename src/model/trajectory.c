@@ -1,6 +1,7 @@
 #include "trajectory.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -46,6 +47,7 @@ ck_Status ck_trajectory_create(ck_Trajectory *trajectory, const ck_Model *model,
     trajectory->data = data;
     double *contact = trajectory->data + trajectory->bytes / sizeof(double);
     if (model->collider_count) trajectory->contact = contact;
+    for (int i = 0; i < 3 * trajectory->capacity && trajectory->contact; i++) contact[i] = NAN;
     if (model->rigid_count) trajectory->turn = (ck_Turn *)(contact + 3 * (size_t)trajectory->capacity);
     return CK_OK;
 }

@@ -19,7 +19,7 @@ typedef struct ck_Trajectory {
     double step;     // s between frames
     double *data;    // [capacity][2][3*n] positions, then velocities; shared with child processes
     size_t bytes;    // of data
-    double *contact; // [capacity][3] N, mean force of the colliders over the frame before; NULL without colliders
+    double *contact; // [capacity][3] N, of the colliders in the mean of the frame before, NaN until told; NULL: none
     ck_Turn *turn;   // [capacity][rigid_count] of each rigid body; NULL without any
     int rigid_count;
 } ck_Trajectory;

@@ -74,13 +74,13 @@ static bool add_wind(const ck_Model *model, const ck_Trajectory *trajectory, int
 
 // By what is free, N: of all that drove it over the last frame, the part that is not in its momentum. Air by the mean
 // of both ends, of second order in the frame; the rest is exact of any solver whose forces within the body cancel, and
-// whose drag is the scene's.
+// whose drag is the scene's. Of a rest, which is one state, nothing is in it.
 static bool balance_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame, const bool *is_free,
                        double *force) {
-    const double *now = ck_trajectory_position(trajectory, frame),
-                 *before = ck_trajectory_position(trajectory, frame - 1),
+    const int first = frame > 0 ? frame - 1 : 0;
+    const double *now = ck_trajectory_position(trajectory, frame), *before = ck_trajectory_position(trajectory, first),
                  *v_now = ck_trajectory_velocity(trajectory, frame),
-                 *v_before = ck_trajectory_velocity(trajectory, frame - 1);
+                 *v_before = ck_trajectory_velocity(trajectory, first);
     for (int i = 0; i < model->particle_count; i++) {
         if (!is_free[i]) continue;
         double field[3];
@@ -93,7 +93,7 @@ static bool balance_at(const ck_Model *model, const ck_Trajectory *trajectory, i
     }
     if (model->collider_count) ck_add_scaled(force, 1, trajectory->contact + 3 * (size_t)frame);
     return add_wind(model, trajectory, frame, is_free, 0.5, force) &&
-           add_wind(model, trajectory, frame - 1, is_free, 0.5, force);
+           add_wind(model, trajectory, first, is_free, 0.5, force);
 }
 
 // Those that no pin holds in the frame that ends here, [n]: pins are let go between frames. At the start those that
@@ -112,8 +112,8 @@ static bool *find_free(const ck_Model *model, const ck_Trajectory *trajectory, i
 
 // What a scene changes into is not known here; nor is a collider's force where an engine tells none, as is seen after
 // the first frame, or where frames come in parts, of which it tells the last.
-static bool is_known(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
-    if (frame == 0 && (model->terms & CK_TERM_RIGID)) return false;
+static bool is_known(const ck_Model *model, const ck_Trajectory *trajectory, bool is_balanced) {
+    if (!is_balanced && (model->terms & CK_TERM_RIGID)) return false;
     if (model->segment_count) return false;
     if (!model->collider_count || trajectory->frame_count == 1) return true;
     return trajectory->contact && !isnan(trajectory->contact[3]) && !(model->terms & CK_TERM_JITTER);
@@ -121,16 +121,17 @@ static bool is_known(const ck_Model *model, const ck_Trajectory *trajectory, int
 
 double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                               const ck_Reference *reference) {
-    (void)reference;
+    const bool rests = reference->is_static && trajectory->frame_count == 1 && !model->collider_count,
+               is_balanced = frame > 0 || rests;
     double field[3], force[3] = {0};
     bool holds = false;
     ck_model_mean_field(model, field);
     const double weight = ck_model_free_mass(model) * ck_length(field);
     for (int i = 0; i < model->particle_count; i++) holds |= ck_model_is_held(model, i);
-    if (!holds || !(weight > 0) || !is_known(model, trajectory, frame)) return NAN;
+    if (!holds || !(weight > 0) || !is_known(model, trajectory, is_balanced)) return NAN;
     bool *is_free = find_free(model, trajectory, frame);
-    const bool is_told = is_free && (frame == 0 ? pull_at(model, trajectory, frame, is_free, force)
-                                                : balance_at(model, trajectory, frame, is_free, force));
+    const bool is_told = is_free && (is_balanced ? balance_at(model, trajectory, frame, is_free, force)
+                                                 : pull_at(model, trajectory, frame, is_free, force));
     free(is_free);
     return is_told ? ck_length(force) / weight : NAN;
 }

@@ -10,9 +10,10 @@ double ck_metric_tension_at(const ck_Model *model, const ck_Trajectory *trajecto
 
 // The mean force on the pins over the frame that ends here, by the balance of momentum of all that is free then, /
 // weight of what is free at the start. So it is the solver's own force, whether it has springs, bars or multipliers: 1
-// of whatever rests, however far its springs are from their lengths. At the start, and of a truth at rest, it is what
-// springs and hinges pull with that end at pins; rigid bars tell nothing there. NaN without pins or field, where the
-// force of colliders is not told for whole frames, and where the scene changes. Cost: one pass over particles.
+// of whatever rests, however far its springs are from their lengths, and of a truth at rest that no collider bears. At
+// the start, and of a truth at rest that colliders bear, it is what springs and hinges pull with that end at pins;
+// rigid bars tell nothing there. NaN without pins or field, where the force of colliders is not told for whole frames,
+// and where the scene changes. Cost: one pass over particles.
 double ck_metric_pin_force_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame,
                               const ck_Reference *reference);
 
