@@ -72,11 +72,14 @@ static void step_down(ck_ProjectedCloth *cloth, ck_Waves *waves) {
 // Sweeps both ways: from the first row and from the last one to the middle, and then the same back, so that what a
 // substep does is a product of steps and their transposes. The halves share a row, which the lower one comes to when
 // the upper one is done.
+typedef enum Half { UPPER, LOWER } Half;
+
 typedef struct BothWays {
     const ck_ProjectedCloth *cloth;
     int in, out;       // sweeps to the middle, and back, of a substep
     int upper, places; // rows of the upper half, and of the lower half
     int lag;           // places between a sweep and the next
+    int behind;        // places by which the upper half is behind the lower one
     int waves[2];      // of those in, and of those out
 } BothWays;
 
@@ -98,10 +101,10 @@ static Stage stage_at(const BothWays *ways, long step) {
     return stage;
 }
 
-// How far from the edges a stage's sweep is, in rows.
-static int place_of(const BothWays *ways, const Stage *stage, int sweep) {
-    const int gone = stage->wave - ways->lag * sweep;
-    return stage->is_out ? ways->places - 1 - gone : gone;
+// How far from its edge a half's sweep is, in rows; less than 0 or beyond its last one where it is not under way.
+static int place_of(const BothWays *ways, const Stage *stage, Half half, int sweep) {
+    const int gone = stage->wave - ways->lag * sweep, place = stage->is_out ? ways->places - 1 - gone : gone;
+    return half == UPPER ? place - ways->behind : place;
 }
 
 static ck_Visit visit_upper(const BothWays *ways, long sweep, int place) {
@@ -126,25 +129,38 @@ static void end_lower(const BothWays *ways, int place, bool is_out, int *ends) {
     set(ends, !is_out && row + 1 < rows ? row + 1 : -1, leaves ? row : -1);
 }
 
-// The outermost sweeps first, from either end: sweeps one after the other would be rows as far apart each, and a
-// processor that sees them fetches the next ones so far on, of the other half, out of the cache of who works on it.
+// Of sweeps that share rows, each comes when the one before is done there. Else the outermost come first, from either
+// end: sweeps one after the other would be rows as far apart each, and a processor that sees them fetches the next ones
+// so far on, of the other half, out of the cache of who works on it.
+static int sweep_at(const BothWays *ways, const Stage *stage, int turn) {
+    if (ways->lag < LAG || turn % 2 == 0) return stage->first + (ways->lag < LAG ? turn : turn / 2);
+    return stage->end - 1 - turn / 2;
+}
+
+static void add_visits(const BothWays *ways, const Stage *stage, Half half, ck_Visits *visits) {
+    for (int turn = 0; turn < stage->end - stage->first; turn++) {
+        const int i = sweep_at(ways, stage, turn), place = place_of(ways, stage, half, i);
+        int *ends = visits->ends[visits->count];
+        if (half == UPPER && (place < 0 || place >= ways->upper)) continue;
+        visits->at[visits->count++] =
+            half == UPPER ? visit_upper(ways, stage->sweep + i, place) : visit_lower(ways, stage->sweep + i, place);
+        if (!ways->cloth->head.contact) continue;
+        if (half == UPPER)
+            end_upper(place, stage->is_out, ends);
+        else
+            end_lower(ways, place, stage->is_out, ends);
+    }
+}
+
 static void run_both_ways(void *state, long step, bool runs_upper, bool runs_lower) {
     const BothWays *ways = state;
     const Stage stage = stage_at(ways, step);
     ck_Visits visits;
     visits.count = 0;
     visits.is_turned = stage.is_out;
-    for (int turn = 0; turn < stage.end - stage.first; turn++) {
-        const int i = turn % 2 ? stage.end - 1 - turn / 2 : stage.first + turn / 2;
-        const int place = place_of(ways, &stage, i);
-        if (runs_upper && place < ways->upper) {
-            if (ways->cloth->head.contact) end_upper(place, stage.is_out, visits.ends[visits.count]);
-            visits.at[visits.count++] = visit_upper(ways, stage.sweep + i, place);
-        }
-        if (!runs_lower) continue;
-        if (ways->cloth->head.contact) end_lower(ways, place, stage.is_out, visits.ends[visits.count]);
-        visits.at[visits.count++] = visit_lower(ways, stage.sweep + i, place);
-    }
+    if (runs_lower && stage.is_out) add_visits(ways, &stage, LOWER, &visits);
+    if (runs_upper) add_visits(ways, &stage, UPPER, &visits);
+    if (runs_lower && !stage.is_out) add_visits(ways, &stage, LOWER, &visits);
     ways->cloth->loops->projection_visits(ways->cloth, &visits);
 }
 
@@ -154,10 +170,11 @@ static void run_both_ways(void *state, long step, bool runs_upper, bool runs_low
 static bool meets_other(void *state, long step, int half, long *needs) {
     const BothWays *ways = state;
     const Stage stage = stage_at(ways, step);
-    const int last = half == 0 ? ways->upper - 1 : ways->places - 1, further = ways->places - ways->upper;
+    const int last = half == UPPER ? ways->upper - 1 : ways->places - 1,
+              further = ways->places - ways->upper - ways->behind;
     for (int i = stage.first; i < stage.end; i++) {
-        if (place_of(ways, &stage, i) != last) continue;
-        const bool is_second = (half == 1) != stage.is_out;
+        if (place_of(ways, &stage, (Half)half, i) != last) continue;
+        const bool is_second = (half == LOWER) != stage.is_out;
         if (is_second)
             *needs = step + 1 - further;
         else if (i > 0)
@@ -177,6 +194,12 @@ static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps, bool i
     return at_least(lag, (2 * places + CK_MOST_VISITS - 1) / CK_MOST_VISITS);
 }
 
+// A wide cloth's visits come one by one: there a sweep may take the row that the one before has just left, while the
+// first cache holds it, if both halves come to the row that they share at once.
+static bool follows_at_once(const ck_ProjectedCloth *cloth, int sweeps, bool is_shared) {
+    return !is_shared && !cloth->head.contact && ck_rows_are_wide(&cloth->rows) && 2 * sweeps <= CK_MOST_VISITS;
+}
+
 static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     const int rows = cloth->rows.rows, sweeps = (int)cloth->rule.iterations;
     BothWays ways = {.cloth = cloth, .out = sweeps / 2, .upper = (rows - 1) / 2};
@@ -184,6 +207,10 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
     ways.places = rows - ways.upper;
     if (ways.places < LEAST_PLACES) waves = NULL;
     ways.lag = lag_of(cloth, ways.places, ways.in, waves != NULL);
+    if (follows_at_once(cloth, ways.in, waves != NULL)) {
+        ways.lag = 1;
+        ways.behind = ways.places - ways.upper;
+    }
     ways.waves[0] = ways.places + ways.lag * (ways.in - 1);
     ways.waves[1] = ways.places + ways.lag * (ways.out - 1);
     ck_waves_run_halves(

@@ -11,9 +11,9 @@
 
 // One Gauss–Seidel sweep over the bars: moves both ends along the bar's direction at the start of the substep until it
 // has its length again, to first order. The old direction conserves energy; the new one would dissipate it.
-// But for long bars, d·d_start is taken to be L²: rows of vectors are spared a division by it. A bar that turned by
-// more than 66° in one substep is projected along itself instead; rows ask that only once a bar was long. Cost: one
-// pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
+// d·d_start is taken to be L²: rows of vectors are spared a division by it. A long bar is projected along itself, which
+// keeps it finite at any step; so is one that turned by more than 66° in one substep, which rows ask only once a bar was
+// long. Cost: one pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
 static void sweep(ck_Native *native, bool is_turned) {
     const ck_Model *model = native->model;
     for (int k = 0; k < model->spring_count; k++) {
@@ -25,9 +25,10 @@ static void sweep(ck_Native *native, bool is_turned) {
         ck_subtract(now, b, a);
         ck_subtract(old, native->start + 3 * bar->b, native->start + 3 * bar->a);
         double square = bar->rest * bar->rest, squared = ck_dot(now, now);
-        if (ck_dot(now, old) < CK_TURNED_BAR * square) memcpy(old, now, sizeof old);
-        double length = squared > CK_LONG_BAR * square ? ck_dot(now, old) : square;
-        double scale = 0.5 * native->used.relaxation * (squared - square) / length / (weight_a + weight_b);
+        const bool is_long = squared > CK_LONG_BAR * square;
+        if (is_long || ck_dot(now, old) < CK_TURNED_BAR * square) memcpy(old, now, sizeof old);
+        double scale =
+            0.5 * native->used.relaxation * (squared - square) / (is_long ? squared : square) / (weight_a + weight_b);
         ck_add_scaled(a, weight_a * scale, old);
         ck_add_scaled(b, -weight_b * scale, old);
     }

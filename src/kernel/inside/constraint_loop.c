@@ -79,21 +79,20 @@ CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_La
     move(cloth, ends, scale, way, terms);
 }
 
-// Each bar by itself: by s·(l² − L²)/(4·d·d_start) where it is long, and along itself where it turned by more than 66°,
-// which in a row without long bars so far is asked of long ones alone. Seldom, and not in line, so that the others'
-// registers are their own.
+// Each bar by itself: along itself by s·(l² − L²)/(4·l²) where it is long, and along itself where it turned by more
+// than 66°, which is asked in rows that had a long bar. Seldom, and not in line, so that the others' registers are
+// their own.
 static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs, bool held,
                                                   bool asks_all) {
     const ck_Lanes3 now = span_now(cloth, &ends), start = span_of(cloth->start, &ends);
     const ck_Lanes square = ck_lanes_all(cloth->rest[ends.kind] * cloth->rest[ends.kind]);
-    const ck_Lanes along = ck_lanes3_dot(now, start), squared = ck_lanes3_dot(now, now);
+    const ck_Lanes along = asks_all ? ck_lanes3_dot(now, start) : square, squared = ck_lanes3_dot(now, now);
     const ck_Lanes near = scale_of(&springs, squared);
     const ck_LaneMask is_long = ck_lanes_less(ck_lanes_all(cloth->long_scale), near);
-    const ck_Lanes asked = asks_all ? along : ck_lanes_choose(is_long, along, square);
-    const ck_LaneMask has_turned = ck_lanes_less(asked, ck_lanes_all((ck_Real)CK_TURNED_BAR) * square);
-    const ck_Lanes length = ck_lanes_choose(has_turned, squared, along);
-    move_bars(cloth, &ends, ck_lanes_choose(is_long, near * square / length, near),
-              ck_lanes3_choose(has_turned, now, start), held ? HELD : 0);
+    const ck_LaneMask leaves_start =
+        ck_lanes_less(ck_lanes_choose(is_long, (ck_Lanes){0}, along), ck_lanes_all((ck_Real)CK_TURNED_BAR) * square);
+    move_bars(cloth, &ends, ck_lanes_choose(is_long, near * square / squared, near),
+              ck_lanes3_choose(leaves_start, now, start), held ? HELD : 0);
 }
 
 // Along d_start by s·(l² − L²)/(4·L²), where masses cancel and s is the relaxation: L² in the place of d·d_start, for a

@@ -110,14 +110,13 @@ CK_INLINE void project_bars(const ck_SweepList *list, Springs *springs) {
         const ck_Lanes squared = ck_lanes3_dot(d, d), along = ck_lanes3_dot(ck_points_across(ways), d),
                        rest = value_of(list, CK_SWEPT_REST, springs, i), square = rest * rest;
         ck_Lanes scale = value_of(list, CK_SWEPT_SHARE, springs, i) * (squared - square);
-        const ck_LaneMask is_long = ck_lanes_less(CK_LONG_BAR * square, squared),
-                          has_turned = ck_lanes_less(along, CK_TURNED_BAR * square);
-        const unsigned turned = ck_lanes_bits(has_turned);
-        if (__builtin_expect(turned | ck_lanes_bits(is_long), 0)) {
-            const ck_Lanes length = ck_lanes_choose(has_turned, squared, along);
-            scale = ck_lanes_choose(is_long, scale * square / length, scale);
+        const ck_LaneMask is_long = ck_lanes_less(CK_LONG_BAR * square, squared);
+        const unsigned leave_start =
+            ck_lanes_bits(ck_lanes_less(ck_lanes_choose(is_long, (ck_Lanes){0}, along), CK_TURNED_BAR * square));
+        if (__builtin_expect(leave_start, 0)) {
+            scale = ck_lanes_choose(is_long, scale * square / squared, scale);
             for (int k = 0; k < CK_LANES; k++)
-                if (turned >> k & 1) ways[k] = now[k];
+                if (leave_start >> k & 1) ways[k] = now[k];
         }
         set_scales(list, springs, i, -scale);
     }
