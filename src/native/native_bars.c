@@ -12,8 +12,8 @@
 // One Gauss–Seidel sweep over the bars: moves both ends along the bar's direction at the start of the substep until it
 // has its length again, to first order. The old direction conserves energy; the new one would dissipate it.
 // d·d_start is taken to be L²: rows of vectors are spared a division by it. A long bar is projected along itself, which
-// keeps it finite at any step; so is one that turned by more than 66° in one substep, which rows ask only once a bar was
-// long. Cost: one pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
+// keeps it finite at any step; so is one that turned by more than 66° in one substep, which rows ask only once a bar
+// was long. Cost: one pass over bars. Source: Ryckaert, Ciccotti, Berendsen 1977 (SHAKE).
 static void sweep(ck_Native *native, bool is_turned) {
     const ck_Model *model = native->model;
     for (int k = 0; k < model->spring_count; k++) {
