@@ -23,12 +23,13 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
     ck_rows_store(&cloth->rows, position, cloth->x, none);
     ck_rows_store(&cloth->rows, velocity, CK_IS_SINGLE ? cloth->kept : cloth->from, none);
     ck_rows_store(&cloth->rows, before, cloth->before, none);
-    for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i++) {
-        velocity[i] = rate * (position[i] - velocity[i]);
-        before[i] *= rate;
-        position[i] += cloth->origin[i % 3];
-        if (CK_IS_SINGLE) position[i] += *place_at(cloth, cloth->start, i);
-    }
+    for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i += 3)
+        for (int axis = 0; axis < 3; axis++) {
+            velocity[i + axis] = rate * (position[i + axis] - velocity[i + axis]);
+            before[i + axis] *= rate;
+            position[i + axis] += cloth->origin[axis];
+        }
+    if (CK_IS_SINGLE) ck_rows_add(&cloth->rows, position, cloth->start);
 }
 
 static void destroy(ck_ProjectedCloth *cloth) {

@@ -98,6 +98,9 @@ ck_Real *ck_rows_allocate(const ck_Rows *rows, int count);
 void ck_rows_load(const ck_Rows *rows, ck_Real *tiles, const double *vectors, const double origin[3]);
 void ck_rows_store(const ck_Rows *rows, double *vectors, const ck_Real *tiles, const double origin[3]);
 
+// Adds what tiles hold to [3*n] interleaved.
+void ck_rows_add(const ck_Rows *rows, double *vectors, const ck_Real *tiles);
+
 // The origin of what is told in single precision follows a cloth that has gone farther than it is wide. True where it
 // moves, by a shift that what is told from it is to lose.
 //   shift  [3] m: where the first particle is

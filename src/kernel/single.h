@@ -6,6 +6,7 @@
 #define ck_rows_allocate ck_rows_allocate_single
 #define ck_rows_load ck_rows_load_single
 #define ck_rows_store ck_rows_store_single
+#define ck_rows_add ck_rows_add_single
 #define ck_rows_shift ck_rows_shift_single
 #define ck_origin_follows ck_origin_follows_single
 #define ck_rows_mark_paired ck_rows_mark_paired_single
