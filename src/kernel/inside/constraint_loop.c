@@ -130,16 +130,20 @@ CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, 
     move(cloth, ends, scale, now, terms);
 }
 
-CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, ck_Colour colour, int row, int vector) {
-    const ck_Rows *rows = &cloth->rows;
-    const ck_Place here = ck_rows_place(rows, row, vector), below = ck_rows_place(rows, row + 1, vector);
-    ck_Real *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + here.single : NULL;
+// A vector of a row whose numbers begin at first; the last one's right is the first, one on.
+CK_INLINE Ends ends_of(const ck_ProjectedCloth *cloth, ck_Colour colour, long first, int vector, bool is_last) {
+    const long here = first + (long)vector * CK_STRIPE, stride = cloth->rows.stride;
+    const ck_Place at = {here, 3 * here}, below = {here + stride, 3 * (here + stride)},
+                   right = is_last ? (ck_Place){first + 1, 3 * first + 1}
+                                   : (ck_Place){here + CK_STRIPE, 3 * (here + CK_STRIPE)},
+                   below_right = {right.single + stride, right.tile + 3 * stride};
+    ck_Real *multiplier = cloth->multiplier[colour] ? cloth->multiplier[colour] + here : NULL;
     switch (colour) {
     case CK_DOWN:
-    case CK_DOWN_LATE: return (Ends){here, below, CK_STRUCTURAL, multiplier};
-    case CK_DOWN_RIGHT: return (Ends){here, ck_rows_right(rows, row + 1, vector, 1), CK_SHEAR, multiplier};
-    case CK_DOWN_LEFT: return (Ends){ck_rows_right(rows, row, vector, 1), below, CK_SHEAR, multiplier};
-    default: return (Ends){here, ck_rows_right(rows, row, vector, 1), CK_STRUCTURAL, multiplier};
+    case CK_DOWN_LATE: return (Ends){at, below, CK_STRUCTURAL, multiplier};
+    case CK_DOWN_RIGHT: return (Ends){at, below_right, CK_SHEAR, multiplier};
+    case CK_DOWN_LEFT: return (Ends){right, below, CK_SHEAR, multiplier};
+    default: return (Ends){at, right, CK_STRUCTURAL, multiplier};
     }
 }
 
@@ -153,20 +157,6 @@ CK_INLINE Ends ends_after(Ends ends, long singles, long tiles) {
 CK_INLINE ck_Direction direction_of(ck_Colour colour) {
     if (colour == CK_DOWN_RIGHT || colour == CK_DOWN_LEFT) return CK_IS_ACROSS;
     return colour == CK_DOWN || colour == CK_DOWN_LATE ? CK_IS_DOWN : CK_IS_ALONG;
-}
-
-// The vectors of a row that are of a colour: first, first + step … below end.
-typedef struct Vectors {
-    int first, step, end;
-} Vectors;
-
-CK_INLINE Vectors vectors_of(const ck_ProjectedCloth *cloth, ck_Colour colour, int row) {
-    const int span = cloth->rows.span;
-    if (colour == CK_ALONG_EVEN || colour == CK_ALONG_ODD) return (Vectors){colour == CK_ALONG_ODD, 2, span - 1};
-    if (colour == CK_ALONG_LAST) return (Vectors){span - 1, 1, span};
-    bool is_there =
-        row + 1 < cloth->rows.rows && (colour == CK_DOWN || colour == CK_DOWN_LATE || cloth->rest[CK_SHEAR] > 0);
-    return (Vectors){0, 1, is_there ? span : 0};
 }
 
 CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, const ck_Stripe *stripe,
@@ -183,18 +173,19 @@ CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, 
     }
 }
 
-// The last vector, whose right is the first, comes by itself.
+// The last vector, whose right is the first, comes by itself. What does not depend on the row is told before all
+// visits.
 CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, const ck_Visit *at, const int terms) {
     const ck_Stripe *stripes = cloth->stripes[direction_of(colour)];
-    const Vectors vectors = vectors_of(cloth, colour, at->row);
-    const int last = cloth->rows.span - 1;
-    Ends ends = ends_of(cloth, colour, at->row, vectors.first);
-    for (int i = vectors.first; i < vectors.end && i < last; i += vectors.step) {
+    const int last = cloth->rows.span - 1, step = colour == CK_ALONG_EVEN || colour == CK_ALONG_ODD ? 2 : 1;
+    const long first = at->row * cloth->rows.stride;
+    Ends ends = ends_of(cloth, colour, first, colour == CK_ALONG_ODD, false);
+    for (int i = colour == CK_ALONG_ODD; i < last && colour != CK_ALONG_LAST; i += step) {
         project_stripe(cloth, &ends, &stripes[i], at, terms);
-        ends = ends_after(ends, vectors.step * CK_STRIPE, vectors.step * 3 * CK_STRIPE);
+        ends = ends_after(ends, step * CK_STRIPE, step * 3 * CK_STRIPE);
     }
-    if (vectors.end <= last) return;
-    ends = ends_of(cloth, colour, at->row, last);
+    if (step == 2) return;
+    ends = ends_of(cloth, colour, first, last, true);
     project_stripe(cloth, &ends, &stripes[last], at, terms);
 }
 
@@ -219,9 +210,11 @@ CK_INLINE ck_Colour colour_at(int turn, const int terms) {
 
 CK_INLINE void project_colour(const ck_ProjectedCloth *cloth, const ck_Visit *visits, int count, ck_Colour colour,
                               const int terms) {
+    if (direction_of(colour) == CK_IS_ACROSS && !(cloth->rest[CK_SHEAR] > 0)) return;
     for (int i = 0; i < count; i++) {
         ck_Visit here = visits[i];
         if (colour == CK_DOWN_LATE && --here.row < 0) continue;
+        if (direction_of(colour) != CK_IS_ALONG && here.row + 1 >= cloth->rows.rows) continue;
         if ((terms & BARS) && cloth->far_from[here.row] <= here.sweep)
             project_far_row(cloth, colour, &here);
         else if (cloth->is_held[here.row])
