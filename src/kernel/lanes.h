@@ -69,7 +69,8 @@ CK_INLINE ck_Lanes ck_lanes_all(ck_Real value) {
 // What C has no words for. c + a·b and c − a·b are rounded once where the processor can: named outright and not left to
 // the compiler (-ffp-contract=off), whose choice depends on what else uses a product. So all that fuse give the same
 // bits. A mask is what a comparison leaves for a choice; its bits, the first lane's lowest. What is no number is beyond
-// any limit. Where each lane goes to the next, the first comes from the vector before.
+// any limit. Where each lane goes to the next, the first comes from the vector before; turned, each has what the next
+// had, and the last one the first's.
 #ifdef CK_SINGLE
 #include "lanes_single.h"
 #else
@@ -124,6 +125,10 @@ CK_INLINE ck_Lanes ck_lanes3_dot(ck_Lanes3 a, ck_Lanes3 b) {
 
 CK_INLINE ck_Lanes3 ck_lanes3_next(ck_Lanes3 before, ck_Lanes3 a) {
     return (ck_Lanes3){ck_lanes_next(before.x, a.x), ck_lanes_next(before.y, a.y), ck_lanes_next(before.z, a.z)};
+}
+
+CK_INLINE ck_Lanes3 ck_lanes3_turn(ck_Lanes3 a) {
+    return (ck_Lanes3){ck_lanes_turn(a.x), ck_lanes_turn(a.y), ck_lanes_turn(a.z)};
 }
 
 CK_INLINE ck_Lanes3 ck_lanes3_choose(ck_LaneMask mask, ck_Lanes3 yes, ck_Lanes3 no) {

@@ -30,6 +30,10 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
     return __builtin_shufflevector(before, value, 7, 8, 9, 10, 11, 12, 13, 14);
 }
+
+CK_INLINE ck_Lanes ck_lanes_turn(ck_Lanes value) {
+    return __builtin_shufflevector(value, value, 1, 2, 3, 4, 5, 6, 7, 0);
+}
 #elif CK_LANES == 4
 typedef __m256d ck_LaneMask;
 
@@ -59,6 +63,10 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
     return __builtin_shufflevector(before, value, 3, 4, 5, 6);
+}
+
+CK_INLINE ck_Lanes ck_lanes_turn(ck_Lanes value) {
+    return __builtin_shufflevector(value, value, 1, 2, 3, 0);
 }
 #else
 typedef ck_LaneBits ck_LaneMask;
@@ -93,6 +101,10 @@ CK_INLINE unsigned ck_lanes_bits(ck_LaneMask mask) {
 
 CK_INLINE ck_Lanes ck_lanes_next(ck_Lanes before, ck_Lanes value) {
     return __builtin_shufflevector(before, value, 1, 2);
+}
+
+CK_INLINE ck_Lanes ck_lanes_turn(ck_Lanes value) {
+    return __builtin_shufflevector(value, value, 1, 0);
 }
 #endif
 

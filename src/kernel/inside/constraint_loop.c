@@ -11,7 +11,9 @@ enum {
     BARS = CK_SWEEP_BARS,
     TURNED = CK_SWEEP_TURNED,
     HELD = CK_SWEEP_HELD,
-    FAR = CK_SWEEP_FAR
+    FAR = CK_SWEEP_FAR,
+    A_IS_AROUND = CK_SWEEP_A_IS_AROUND,
+    B_IS_AROUND = CK_SWEEP_B_IS_AROUND
 };
 
 // A vector of springs.
@@ -31,9 +33,27 @@ CK_INLINE Springs springs_of(const ck_Stripe *stripe, int lane) {
                      ck_lanes_load(stripe->softness + lane), ck_lanes_load(stripe->viscosity + lane)};
 }
 
+// What stands at an end. One around the row's last vector is the first, one on. Where that is a whole vector, it is
+// read as it stands and turned: what is read across two lines of the cache waits for all that was stored there.
+CK_INLINE ck_Lanes end_of(const ck_Real *singles, ck_Place end, bool is_around) {
+    return is_around ? ck_lanes_turn(ck_lanes_load(singles + end.single - 1)) : ck_lanes_load(singles + end.single);
+}
+
+CK_INLINE ck_Lanes3 end3_of(const ck_Real *tiles, ck_Place end, bool is_around) {
+    return is_around ? ck_lanes3_turn(ck_lanes3_load(tiles + end.tile - 1)) : ck_lanes3_load(tiles + end.tile);
+}
+
+CK_INLINE void store_end(ck_Real *tiles, ck_Place end, ck_Lanes3 value, bool is_around) {
+    if (is_around)
+        ck_lanes3_store(tiles + end.tile - 1, ck_lanes3_next(value, value));
+    else
+        ck_lanes3_store(tiles + end.tile, value);
+}
+
 // 0 where one of two ends is free, 1 where both are or none: then none will move.
-CK_INLINE ck_Lanes both_alike(const ck_ProjectedCloth *cloth, const Ends *ends) {
-    ck_Lanes apart = ck_lanes_load(cloth->is_free + ends->a.single) - ck_lanes_load(cloth->is_free + ends->b.single);
+CK_INLINE ck_Lanes both_alike(const ck_ProjectedCloth *cloth, const Ends *ends, const int terms) {
+    const ck_Lanes apart =
+        end_of(cloth->is_free, ends->a, terms & A_IS_AROUND) - end_of(cloth->is_free, ends->b, terms & B_IS_AROUND);
     return 1 - apart * apart;
 }
 
@@ -42,30 +62,31 @@ CK_INLINE ck_Lanes both_alike(const ck_ProjectedCloth *cloth, const Ends *ends) 
 CK_INLINE void move(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way, const int terms) {
     ck_Lanes scale_a = scale, scale_b = scale;
     if (terms & HELD) {
-        scale_a *= ck_lanes_load(cloth->is_free + ends->a.single);
-        scale_b *= ck_lanes_load(cloth->is_free + ends->b.single);
+        scale_a *= end_of(cloth->is_free, ends->a, terms & A_IS_AROUND);
+        scale_b *= end_of(cloth->is_free, ends->b, terms & B_IS_AROUND);
     }
-    ck_Lanes3 a = ck_lanes3_add_scaled(ck_lanes3_load(cloth->x + ends->a.tile), scale_a, way);
-    ck_Lanes3 b = ck_lanes3_subtract_scaled(ck_lanes3_load(cloth->x + ends->b.tile), scale_b, way);
-    ck_lanes3_store(cloth->x + ends->b.tile, b);
-    ck_lanes3_store(cloth->x + ends->a.tile, a);
+    const ck_Lanes3 a = ck_lanes3_add_scaled(end3_of(cloth->x, ends->a, terms & A_IS_AROUND), scale_a, way);
+    const ck_Lanes3 b = ck_lanes3_subtract_scaled(end3_of(cloth->x, ends->b, terms & B_IS_AROUND), scale_b, way);
+    store_end(cloth->x, ends->b, b, terms & B_IS_AROUND);
+    store_end(cloth->x, ends->a, a, terms & A_IS_AROUND);
 }
 
-CK_INLINE ck_Lanes3 span_of(const ck_Real *tiles, const Ends *ends) {
-    return ck_lanes3_subtract(ck_lanes3_load(tiles + ends->b.tile), ck_lanes3_load(tiles + ends->a.tile));
+CK_INLINE ck_Lanes3 span_of(const ck_Real *tiles, const Ends *ends, const int terms) {
+    return ck_lanes3_subtract(end3_of(tiles, ends->b, terms & B_IS_AROUND),
+                              end3_of(tiles, ends->a, terms & A_IS_AROUND));
 }
 
 // In single precision x is told from where the substep starts: places are rounded to 6e-8 of the cloth's size, and the
 // ways of a substep to 6e-8 of themselves.
-CK_INLINE ck_Lanes3 span_now(const ck_ProjectedCloth *cloth, const Ends *ends) {
-    const ck_Lanes3 x = span_of(cloth->x, ends);
-    return CK_IS_SINGLE ? ck_lanes3_add(span_of(cloth->start, ends), x) : x;
+CK_INLINE ck_Lanes3 span_now(const ck_ProjectedCloth *cloth, const Ends *ends, const int terms) {
+    const ck_Lanes3 x = span_of(cloth->x, ends, terms);
+    return CK_IS_SINGLE ? ck_lanes3_add(span_of(cloth->start, ends, terms), x) : x;
 }
 
 // What ends have moved by against each other in this substep.
-CK_INLINE ck_Lanes3 span_moved(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes3 now) {
-    if (CK_IS_SINGLE) return ck_lanes3_subtract(span_of(cloth->x, ends), span_of(cloth->kept, ends));
-    return ck_lanes3_subtract(now, span_of(cloth->start, ends));
+CK_INLINE ck_Lanes3 span_moved(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes3 now, const int terms) {
+    if (CK_IS_SINGLE) return ck_lanes3_subtract(span_of(cloth->x, ends, terms), span_of(cloth->kept, ends, terms));
+    return ck_lanes3_subtract(now, span_of(cloth->start, ends, terms));
 }
 
 // s·(l² − L²)/(4·L²) of bars.
@@ -75,7 +96,7 @@ CK_INLINE ck_Lanes scale_of(const Springs *springs, ck_Lanes squared) {
 
 CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_Lanes scale, ck_Lanes3 way,
                          const int terms) {
-    if (terms & HELD) scale += scale - scale * both_alike(cloth, ends);
+    if (terms & HELD) scale += scale - scale * both_alike(cloth, ends, terms);
     move(cloth, ends, scale, way, terms);
 }
 
@@ -84,7 +105,7 @@ CK_INLINE void move_bars(const ck_ProjectedCloth *cloth, const Ends *ends, ck_La
 // their own.
 static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth, Ends ends, Springs springs, bool held,
                                                   bool asks_all) {
-    const ck_Lanes3 now = span_now(cloth, &ends), start = span_of(cloth->start, &ends);
+    const ck_Lanes3 now = span_now(cloth, &ends, 0), start = span_of(cloth->start, &ends, 0);
     const ck_Lanes square = ck_lanes_all(cloth->rest[ends.kind] * cloth->rest[ends.kind]);
     const ck_Lanes along = asks_all ? ck_lanes3_dot(now, start) : square, squared = ck_lanes3_dot(now, now);
     const ck_Lanes near = scale_of(&springs, squared);
@@ -101,30 +122,30 @@ static __attribute__((noinline)) void project_far(const ck_ProjectedCloth *cloth
 // row with a long bar is looked at bar by bar in the substep's further sweeps.
 CK_INLINE void project_bar(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs, const ck_Visit *at,
                            const int terms) {
-    const ck_Lanes3 now = span_now(cloth, ends);
+    const ck_Lanes3 now = span_now(cloth, ends, terms);
     const ck_Lanes scale = scale_of(springs, ck_lanes3_dot(now, now));
     if (__builtin_expect(ck_lanes_any_beyond(scale, cloth->long_scale), 0)) {
         cloth->far_from[at->row] = at->sweep + 1;
         project_far(cloth, *ends, *springs, (terms & HELD) != 0, false);
     } else
-        move_bars(cloth, ends, scale, span_of(cloth->start, ends), terms);
+        move_bars(cloth, ends, scale, span_of(cloth->start, ends, terms), terms);
 }
 
 // By the share of (1 − L'/l), along the spring, that is its own: L' is the length at which it would rest.
 CK_INLINE void project_spring(const ck_ProjectedCloth *cloth, const Ends *ends, const Springs *springs,
                               const int terms) {
     const ck_Compliant *compliant = &cloth->compliant[ends->kind];
-    ck_Lanes3 now = span_now(cloth, ends);
+    ck_Lanes3 now = span_now(cloth, ends, terms);
     ck_Lanes squared = ck_lanes3_dot(now, now), inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
     ck_Lanes share = springs->share, share_rest = springs->share_rest;
     if (terms & REPEATED) share_rest = ck_lanes_minus(share_rest, springs->softness, ck_lanes_load(ends->multiplier));
     if (terms & DAMPED) {
-        ck_Lanes3 moved = span_moved(cloth, ends, now);
+        ck_Lanes3 moved = span_moved(cloth, ends, now, terms);
         share_rest = ck_lanes_minus(share_rest, springs->viscosity * ck_lanes3_dot(moved, now), inverse);
     }
     ck_Lanes scale = ck_lanes_minus(share, share_rest, inverse);
-    if (terms & HELD) scale *= compliant->alone + (1 - compliant->alone) * both_alike(cloth, ends);
+    if (terms & HELD) scale *= compliant->alone + (1 - compliant->alone) * both_alike(cloth, ends, terms);
     if (terms & REPEATED)
         ck_lanes_store(ends->multiplier, ck_lanes_minus(ck_lanes_load(ends->multiplier), scale, squared * inverse));
     move(cloth, ends, scale, now, terms);
@@ -173,6 +194,12 @@ CK_INLINE void project_stripe(const ck_ProjectedCloth *cloth, const Ends *ends, 
     }
 }
 
+// Which end is around, where a vector is a stripe.
+CK_INLINE int around_of(ck_Colour colour) {
+    if (CK_LANES < CK_STRIPE || direction_of(colour) == CK_IS_DOWN) return 0;
+    return colour == CK_DOWN_LEFT ? A_IS_AROUND : B_IS_AROUND;
+}
+
 // The last vector, whose right is the first, comes by itself. What does not depend on the row is told before all
 // visits.
 CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, const ck_Visit *at, const int terms) {
@@ -186,7 +213,7 @@ CK_INLINE void project_row(const ck_ProjectedCloth *cloth, ck_Colour colour, con
     }
     if (step == 2) return;
     ends = ends_of(cloth, colour, first, last, true);
-    project_stripe(cloth, &ends, &stripes[last], at, terms);
+    project_stripe(cloth, &ends, &stripes[last], at, terms | around_of(colour));
 }
 
 static __attribute__((noinline)) void project_far_row(const ck_ProjectedCloth *cloth, ck_Colour colour,

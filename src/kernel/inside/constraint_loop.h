@@ -67,7 +67,9 @@ enum {
     CK_SWEEP_BARS = 4,
     CK_SWEEP_TURNED = 8, // colours come in the reverse order
     CK_SWEEP_HELD = 16,
-    CK_SWEEP_FAR = 32
+    CK_SWEEP_FAR = 32,
+    CK_SWEEP_A_IS_AROUND = 64, // an end of a row's last vector is the first vector, one lane on
+    CK_SWEEP_B_IS_AROUND = 128
 };
 
 // A sweep at a row; and the rows, or -1, that are to begin the substep before it.
