@@ -61,12 +61,13 @@ static void run_down(void *state, long block, int wave) {
 static void step_down(ck_ProjectedCloth *cloth, ck_Waves *waves) {
     const ck_Rows *rows = &cloth->rows;
     if (!ck_rows_are_shared(rows)) waves = NULL;
+    const bool is_shared = ck_waves_are_shared(waves);
     const int depth = ck_waves_depth(waves, cloth->sweeps, rows->rows, LAG, row_bytes(cloth));
-    cloth->depth = at_most(at_least(depth, waves || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH), CK_MOST_VISITS);
+    cloth->depth = at_most(at_least(depth, is_shared || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH), CK_MOST_VISITS);
     // a block's first sweep reads the row below it as the last sweep of the block before left it
     const int reach = LAG * (cloth->depth - 1) + 2;
     ck_waves_run(waves, &(ck_WaveWork){run_down, cloth, (cloth->sweeps + cloth->depth - 1) / cloth->depth,
-                                       rows->rows + reach - 2, reach});
+                                       rows->rows + reach - 2, reach, cloth->sweeps});
 }
 
 // Sweeps both ways: from the first row and from the last one to the middle, and then the same back, so that what a
@@ -206,15 +207,16 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
     ways.in = sweeps - ways.out;
     ways.places = rows - ways.upper;
     if (ways.places < LEAST_PLACES) waves = NULL;
-    ways.lag = lag_of(cloth, ways.places, ways.in, waves != NULL);
-    if (follows_at_once(cloth, ways.in, waves != NULL)) {
+    const bool is_shared = ck_waves_are_shared(waves);
+    ways.lag = lag_of(cloth, ways.places, ways.in, is_shared);
+    if (follows_at_once(cloth, ways.in, is_shared)) {
         ways.lag = 1;
         ways.behind = ways.places - ways.upper;
     }
     ways.waves[0] = ways.places + ways.lag * (ways.in - 1);
     ways.waves[1] = ways.places + ways.lag * (ways.out - 1);
-    ck_waves_run_halves(
-        waves, &(ck_HalvesWork){run_both_ways, meets_other, &ways, (long)substeps * (ways.waves[0] + ways.waves[1])});
+    ck_waves_run_halves(waves, &(ck_HalvesWork){run_both_ways, meets_other, &ways,
+                                                (long)substeps * (ways.waves[0] + ways.waves[1]), cloth->sweeps});
 }
 
 static void follow(ck_ProjectedCloth *cloth) {

@@ -2,6 +2,7 @@
 
 #include "process.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
@@ -20,10 +21,12 @@
 // Bytes that a core's second cache holds at least.
 #define LEAST_SECOND_CACHE (1 << 19)
 
-// s: less than the slice of time that a system gives others, once they have the processor.
-#define SLICE 0.002
-// The most jobs that are run alone after one in which a thread was not there.
-#define MOST_ALONE 1023
+// Jobs in which a way is timed, and before the other way is tried again.
+#define TRIAL 3
+#define LEAST_PAUSE 8
+#define MOST_PAUSE 1024
+// s that a trial may lose, less than the slice of time that others have once they take a processor.
+#define MOST_LOST 1e-3
 
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
@@ -36,54 +39,51 @@ typedef struct Worker {
     sem_t wake;
 } Worker;
 
+// Where processors share no cache, or others take them, threads may cost more than they gain. So jobs go the way that
+// took less time, shared or alone; from time to time the other one is tried, more and more seldom while it is slower.
+typedef struct Pace {
+    bool is_alone, is_trial;
+    int left, pause; // jobs until the way may change, and between two trials
+    double begun;    // s
+    double least[2]; // s a unit of work, of the latest jobs that were timed, of each way
+} Pace;
+
 struct ck_Waves {
     int threads, parts; // parts: threads that have work in this job
     ck_WaveWork work;
     const ck_HalvesWork *halves; // NULL: the job is of waves
     bool stops;
-    double begun;          // s: this job
-    bool lost;             // in this job another thread did not run
-    int alone, most_alone; // jobs that are run alone yet, and how many so the last time
-    Worker workers[];      // the first is the caller
+    Pace pace;
+    Worker workers[]; // the first is the caller
 };
 
-// A thread's wait for another one. The caller, the first thread, judges it: where the other tells of nothing for longer
-// than SLICE and all the time that the job has taken, it does not run.
-static void wait_for(ck_Waves *waves, int index, const Worker *other, long done) {
-    double since = 0;
-    long told = -1;
-    for (long looks = 0;; looks++) {
-        const long now = atomic_load_explicit(&other->done, memory_order_acquire);
-        if (now >= done) return;
-        if (looks < LOOKS) continue;
-        if (now != told) since = ck_wall();
-        told = now;
-        sched_yield();
-        if (index == 0) waves->lost |= ck_wall() - since > SLICE + (since - waves->begun);
-    }
-}
-
-// Where others take the processors, each wait for a thread may lose a slice of time: the next jobs are run alone, twice
-// as many each time, and half as many once threads are there again. True where this one is; it is counted.
-static bool take_alone(ck_Waves *waves) {
-    if (!waves || waves->alone == 0) return !waves;
-    waves->alone--;
-    return true;
-}
-
-static void begin_job(ck_Waves *waves) {
-    waves->begun = ck_wall();
-    waves->lost = false;
+static void wait_for(const Worker *other, long done) {
+    for (long looks = 0; atomic_load_explicit(&other->done, memory_order_acquire) < done; looks++)
+        if (looks >= LOOKS) sched_yield();
 }
 
 bool ck_waves_are_shared(const ck_Waves *waves) {
-    return waves && waves->alone == 0;
+    return waves && !waves->pace.is_alone;
 }
 
-static void end_job(ck_Waves *waves) {
-    waves->most_alone = waves->lost ? 2 * waves->most_alone + 1 : waves->most_alone / 2;
-    if (waves->most_alone > MOST_ALONE) waves->most_alone = MOST_ALONE;
-    waves->alone = waves->lost ? waves->most_alone : 0;
+static void begin_job(Pace *pace) {
+    if (pace->left <= TRIAL) pace->begun = ck_wall();
+}
+
+static void end_job(Pace *pace, long amount) {
+    double *least = &pace->least[pace->is_alone], *other = &pace->least[!pace->is_alone];
+    if (pace->left <= TRIAL) {
+        const double took = (ck_wall() - pace->begun) / (double)amount;
+        *least = pace->left == TRIAL ? took : fmin(*least, took);
+    }
+    const bool is_lost = pace->is_trial && (*least - *other) * (double)amount > MOST_LOST;
+    pace->left = is_lost ? 0 : pace->left - 1;
+    if (pace->left > 0) return;
+    const bool is_better = *least < *other;
+    if (pace->is_trial) pace->pause = is_better ? LEAST_PAUSE : pace->pause < MOST_PAUSE ? 2 * pace->pause : MOST_PAUSE;
+    if (!pace->is_trial || !is_better) pace->is_alone = !pace->is_alone;
+    pace->is_trial = !pace->is_trial;
+    pace->left = pace->is_trial ? TRIAL : pace->pause;
 }
 
 static int part_start(const ck_WaveWork *work, int parts, int part) {
@@ -96,10 +96,10 @@ static void run_part(ck_Waves *waves, int part) {
     const int first = part_start(&work, waves->parts, part), end = part_start(&work, waves->parts, part + 1);
     Worker *self = &waves->workers[part];
     for (long block = 0; block < work.blocks; block++) {
-        if (part > 0) wait_for(waves, part, self - 1, block * work.waves + first);
+        if (part > 0) wait_for(self - 1, block * work.waves + first);
         for (int wave = first; wave < end; wave++) {
             int needed = wave + work.reach < work.waves ? wave + work.reach : work.waves - 1;
-            if (block > 0 && needed >= end) wait_for(waves, part, self + 1, (block - 1) * work.waves + needed + 1);
+            if (block > 0 && needed >= end) wait_for(self + 1, (block - 1) * work.waves + needed + 1);
             work.run(work.state, block, wave);
             // what the neighbours wait for; each time told takes the line away from one that looks
             if (wave < first + work.reach || wave + 1 == end)
@@ -115,7 +115,7 @@ static void run_half(ck_Waves *waves, int half) {
     for (long step = 0; step < work.steps; step++) {
         long needs = 0;
         const bool meets = work.meets(work.state, step, half, &needs);
-        if (meets) wait_for(waves, half, other, needs);
+        if (meets) wait_for(other, needs);
         work.run(work.state, step, half == 0, half == 1);
         // the last one is told once: the caller may then begin another job
         if (meets && step + 1 < work.steps) atomic_store_explicit(&self->done, step + 1, memory_order_release);
@@ -155,8 +155,7 @@ ck_Status ck_waves_create(ck_Waves **out, int threads, ck_Error *error) {
     if (!waves) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     waves->threads = 1;
     waves->stops = false;
-    waves->alone = 0;
-    waves->most_alone = 0;
+    waves->pace = (Pace){.left = TRIAL, .pause = LEAST_PAUSE};
     atomic_init(&waves->workers[0].done, 0);
     for (int i = 1; i < threads; i++) {
         Worker *worker = &waves->workers[i];
@@ -225,41 +224,58 @@ void ck_passes_run(ck_Waves *waves, const ck_Passes *passes) {
     const int reach = passes->reach,
               depth = ck_waves_depth(waves, passes->passes, passes->rows, reach, passes->row_bytes);
     ck_waves_run(waves, &(ck_WaveWork){run_wave, &(Interleaved){passes, depth}, (passes->passes + depth - 1) / depth,
-                                       passes->rows + reach * (depth - 1), reach * depth});
+                                       passes->rows + reach * (depth - 1), reach * depth, passes->passes});
 }
 
-void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
-    int parts = waves && work->blocks > 1 ? work->waves / (LEAST_PART * work->reach) : 1;
-    if (waves && parts > waves->threads) parts = waves->threads;
-    if (parts <= 1 || take_alone(waves)) {
-        for (long block = 0; block < work->blocks; block++)
-            for (int wave = 0; wave < work->waves; wave++) work->run(work->state, block, wave);
-        return;
-    }
-    begin_job(waves);
+static void run_shared(ck_Waves *waves, const ck_WaveWork *work, int parts) {
     waves->work = *work;
     waves->halves = NULL;
     waves->parts = parts;
     for (int i = 0; i < parts; i++) atomic_store(&waves->workers[i].done, 0);
     for (int i = 1; i < parts; i++) call(&waves->workers[i]);
     run_part(waves, 0);
-    for (int i = 1; i < parts; i++) {
-        const int end = part_start(work, parts, i + 1);
-        wait_for(waves, 0, &waves->workers[i], (work->blocks - 1) * work->waves + end);
+    for (int i = 1; i < parts; i++)
+        wait_for(&waves->workers[i], (work->blocks - 1) * work->waves + part_start(work, parts, i + 1));
+}
+
+static void run_alone(const ck_WaveWork *work) {
+    for (long block = 0; block < work->blocks; block++)
+        for (int wave = 0; wave < work->waves; wave++) work->run(work->state, block, wave);
+}
+
+void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
+    int parts = waves && work->blocks > 1 ? work->waves / (LEAST_PART * work->reach) : 1;
+    if (waves && parts > waves->threads) parts = waves->threads;
+    if (parts <= 1) {
+        run_alone(work);
+        return;
     }
-    end_job(waves);
+    begin_job(&waves->pace);
+    if (waves->pace.is_alone)
+        run_alone(work);
+    else
+        run_shared(waves, work, parts);
+    end_job(&waves->pace, work->amount);
+}
+
+static void run_halves_alone(const ck_HalvesWork *work) {
+    for (long step = 0; step < work->steps; step++) work->run(work->state, step, true, true);
 }
 
 void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work) {
-    if (take_alone(waves)) {
-        for (long step = 0; step < work->steps; step++) work->run(work->state, step, true, true);
+    if (!waves) {
+        run_halves_alone(work);
         return;
     }
-    begin_job(waves);
-    waves->halves = work;
-    for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
-    call(&waves->workers[1]);
-    run_half(waves, 0);
-    wait_for(waves, 0, &waves->workers[1], work->steps);
-    end_job(waves);
+    begin_job(&waves->pace);
+    if (waves->pace.is_alone) {
+        run_halves_alone(work);
+    } else {
+        waves->halves = work;
+        for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
+        call(&waves->workers[1]);
+        run_half(waves, 0);
+        wait_for(&waves->workers[1], work->steps);
+    }
+    end_job(&waves->pace, work->amount);
 }

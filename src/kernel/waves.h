@@ -11,12 +11,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+//   amount  of work, in a unit of its owner's, by which the times of jobs are compared
 typedef struct ck_WaveWork {
     void (*run)(void *state, long block, int wave);
     void *state;
     long blocks;
     int waves; // of a block
     int reach; // a wave needs this many waves after its own of the block before
+    long amount;
 } ck_WaveWork;
 
 typedef struct ck_Waves ck_Waves;
@@ -26,7 +28,7 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
-// True where the next job is for all threads: see ck_waves_run.
+// True where the next job is for all threads, as the first three are: see ck_waves_run.
 bool ck_waves_are_shared(const ck_Waves *waves);
 
 // How many passes over rows of so many bytes a block should hold, each lag rows behind the one before, at least 1. A
@@ -47,12 +49,13 @@ typedef struct ck_Passes {
 void ck_passes_run(ck_Waves *waves, const ck_Passes *passes);
 
 // Two halves of a job that go through the same steps, each by itself but where they come to what both share.
-//   meets  true where a half comes there in a step; *needs: steps that the other must have done before, 0 for none
+//   meets   true where a half comes there in a step; *needs: steps that the other must have done before, 0 for none
+//   amount  as above
 typedef struct ck_HalvesWork {
     void (*run)(void *state, long step, bool runs_first, bool runs_second);
     bool (*meets)(void *state, long step, int half, long *needs);
     void *state;
-    long steps;
+    long steps, amount;
 } ck_HalvesWork;
 
 // Returns when all is done, by one thread or by two.
@@ -60,8 +63,8 @@ void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work);
 
 // Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads, and one block to one. Cost:
 // some atomic stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps
-// after 0.1 ms. Where others take the processors, so that a thread is waited for that does not run, the caller does the
-// next jobs alone, which changes no result.
+// after 0.1 ms. Jobs that threads do not gain by, as their processors are far apart or others take them, are run by the
+// caller alone, which changes no result; the jobs of one owner are alike, so that their times can be compared.
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work);
 
 #endif

@@ -9,6 +9,8 @@
 #include "vector.h"
 
 #include <float.h>
+#include <pthread.h>
+#include <stdatomic.h>
 
 // The substep as its formula reads, with the reference integrator's forces.
 static void plain_step(const ck_Model *model, double dt, double *x, double *v, double *predicted, double *a) {
@@ -283,6 +285,43 @@ static void test_depth(void **state) {
     }
 }
 
+// Work that takes a thousand times as long by another thread than by the first one.
+typedef struct Slow {
+    pthread_t first;
+} Slow;
+
+static void run_slowly(void *state, long step, bool runs_first, bool runs_second) {
+    Slow *slow = state;
+    (void)step;
+    if (!runs_first && runs_second && !pthread_equal(pthread_self(), slow->first))
+        for (int i = 0; i < 100000; i++) atomic_signal_fence(memory_order_seq_cst);
+}
+
+static bool never_meets(void *state, long step, int half, long *needs) {
+    (void)state;
+    (void)step;
+    (void)half;
+    (void)needs;
+    return false;
+}
+
+// Such jobs are soon run by the first thread alone, but for trials: of three jobs at first, and at most as many each
+// time that the pause of eight between them has doubled.
+static void test_choice(void **state) {
+    (void)state;
+    ck_Waves *waves;
+    Slow slow = {.first = pthread_self()};
+    int shared = 0;
+    assert_int_equal(ck_waves_create(&waves, 2, NULL), CK_OK);
+    assert_false(ck_waves_are_shared(NULL));
+    for (int i = 0; i < 1000; i++) {
+        shared += ck_waves_are_shared(waves);
+        ck_waves_run_halves(waves, &(ck_HalvesWork){run_slowly, never_meets, &slow, 10, 10});
+    }
+    ck_waves_destroy(waves);
+    assert_in_range(shared, 3, 3 * 8);
+}
+
 // The widest that are there and no wider than asked for; two doubles always are.
 static void test_vectors(void **state) {
     (void)state;
@@ -333,9 +372,9 @@ static void test_fit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),
-                                       cmocka_unit_test(test_contact),  cmocka_unit_test(test_threads),
-                                       cmocka_unit_test(test_depth),    cmocka_unit_test(test_vectors),
-                                       cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),  cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_threads),  cmocka_unit_test(test_depth), cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_vectors),  cmocka_unit_test(test_root),  cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
