@@ -76,7 +76,7 @@ typedef struct ck_ProjectionSetup {
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 
-// As many substeps, without allocation; sweeps run interleaved, a few rows apart, which changes no result.
+// As many substeps, without allocation; sweeps run interleaved, a row or more apart, which changes no result.
 // The same bits however many threads share the waves, of which two find work where bars are swept several times; on
 // which processors, loops.h says.
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);

@@ -27,13 +27,15 @@ void ck_rows_load(const ck_Rows *rows, ck_Real *tiles, const double *vectors, co
                 (ck_Real)(vectors[3 * i + axis] - origin[axis]);
 }
 
+// Without an origin adds to what is there.
 CK_INLINE void store(const ck_Rows *rows, double *vectors, const ck_Real *tiles, const double *origin) {
     for (int row = 0; row < rows->rows; row++, vectors += 3 * rows->columns)
         for (int lane = 0; lane * rows->span < rows->columns; lane++) {
             double *to = vectors + 3 * lane * rows->span;
             const ck_Real *from = tiles + ck_rows_place(rows, row, 0).tile + lane;
             for (int i = 0; i < rows->span && lane * rows->span + i < rows->columns; i++, from += 3 * CK_STRIPE)
-                for (int axis = 0; axis < 3; axis++) to[3 * i + axis] = from[axis * CK_STRIPE] + (origin ? origin[axis] : to[3 * i + axis]);
+                for (int axis = 0; axis < 3; axis++)
+                    to[3 * i + axis] = from[axis * CK_STRIPE] + (origin ? origin[axis] : to[3 * i + axis]);
         }
 }
 

@@ -62,7 +62,7 @@ static void step_down(ck_ProjectedCloth *cloth, ck_Waves *waves) {
     const ck_Rows *rows = &cloth->rows;
     if (!ck_rows_are_shared(rows)) waves = NULL;
     const bool is_shared = ck_waves_are_shared(waves);
-    const int depth = ck_waves_depth(waves, cloth->sweeps, rows->rows, LAG, row_bytes(cloth));
+    const int depth = ck_waves_depth(is_shared ? waves : NULL, cloth->sweeps, rows->rows, LAG, row_bytes(cloth));
     cloth->depth = at_most(at_least(depth, is_shared || ck_rows_are_wide(rows) ? DEPTH_WIDE : DEPTH), CK_MOST_VISITS);
     // a block's first sweep reads the row below it as the last sweep of the block before left it
     const int reach = LAG * (cloth->depth - 1) + 2;
@@ -80,6 +80,7 @@ typedef struct BothWays {
     int in, out;       // sweeps to the middle, and back, of a substep
     int upper, places; // rows of the upper half, and of the lower half
     int lag;           // places between a sweep and the next
+    bool follow;       // sweeps share rows, and come one by one
     int behind;        // places by which the upper half is behind the lower one
     int waves[2];      // of those in, and of those out
 } BothWays;
@@ -134,8 +135,8 @@ static void end_lower(const BothWays *ways, int place, bool is_out, int *ends) {
 // end: sweeps one after the other would be rows as far apart each, and a processor that sees them fetches the next ones
 // so far on, of the other half, out of the cache of who works on it.
 static int sweep_at(const BothWays *ways, const Stage *stage, int turn) {
-    if (ways->lag < LAG || turn % 2 == 0) return stage->first + (ways->lag < LAG ? turn : turn / 2);
-    return stage->end - 1 - turn / 2;
+    if (ways->follow) return stage->first + turn;
+    return turn % 2 ? stage->end - 1 - turn / 2 : stage->first + turn / 2;
 }
 
 static void add_visits(const BothWays *ways, const Stage *stage, Half half, ck_Visits *visits) {
@@ -171,8 +172,7 @@ static void run_both_ways(void *state, long step, bool runs_upper, bool runs_low
 static bool meets_other(void *state, long step, int half, long *needs) {
     const BothWays *ways = state;
     const Stage stage = stage_at(ways, step);
-    const int last = half == UPPER ? ways->upper - 1 : ways->places - 1,
-              further = ways->places - ways->upper - ways->behind;
+    const int last = half == UPPER ? ways->upper - 1 : ways->places - 1, further = ways->places - ways->upper;
     for (int i = stage.first; i < stage.end; i++) {
         if (place_of(ways, &stage, (Half)half, i) != last) continue;
         const bool is_second = (half == LOWER) != stage.is_out;
@@ -195,9 +195,9 @@ static int lag_of(const ck_ProjectedCloth *cloth, int places, int sweeps, bool i
     return at_least(lag, (2 * places + CK_MOST_VISITS - 1) / CK_MOST_VISITS);
 }
 
-// A wide cloth's visits come one by one: there a sweep may take the row that the one before has just left, while the
-// first cache holds it, if both halves come to the row that they share at once.
-static bool follows_at_once(const ck_ProjectedCloth *cloth, int sweeps, bool is_shared) {
+// A wide cloth's visits come one by one (run_colours), so that a sweep may take the row that the one before has just
+// left and the first cache still holds. With contact rows end after all visits of a wave, which are to share none.
+static bool follow_at_once(const ck_ProjectedCloth *cloth, int sweeps, bool is_shared) {
     return !is_shared && !cloth->head.contact && ck_rows_are_wide(&cloth->rows) && 2 * sweeps <= CK_MOST_VISITS;
 }
 
@@ -209,9 +209,10 @@ static void step_both_ways(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves
     if (ways.places < LEAST_PLACES) waves = NULL;
     const bool is_shared = ck_waves_are_shared(waves);
     ways.lag = lag_of(cloth, ways.places, ways.in, is_shared);
-    if (follows_at_once(cloth, ways.in, is_shared)) {
+    ways.follow = follow_at_once(cloth, ways.in, is_shared);
+    if (ways.follow) {
         ways.lag = 1;
-        ways.behind = ways.places - ways.upper;
+        ways.behind = ways.places - ways.upper; // both come to the row that they share in one step
     }
     ways.waves[0] = ways.places + ways.lag * (ways.in - 1);
     ways.waves[1] = ways.places + ways.lag * (ways.out - 1);

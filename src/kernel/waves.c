@@ -21,12 +21,16 @@
 // Bytes that a core's second cache holds at least.
 #define LEAST_SECOND_CACHE (1 << 19)
 
-// Jobs in which a way is timed, and before the other way is tried again.
-#define TRIAL 3
+// Jobs of a trial of the other way, whose first one is not counted, as it wakes threads.
+#define TRIAL 4
+// Jobs from one trial to the next: so many where the way has changed, twice as many each time that it has not.
 #define LEAST_PAUSE 8
 #define MOST_PAUSE 1024
-// s that a trial may lose, less than the slice of time that others have once they take a processor.
-#define MOST_LOST 1e-3
+// The latest jobs of a way that its time is the mean of.
+#define RECENT 8
+// A job that takes so many times what the other way took, and so many s more, is lost: others have a processor then.
+#define LOST_TIMES 1.5
+#define LOST_SECONDS 1e-3
 
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
@@ -40,12 +44,12 @@ typedef struct Worker {
 } Worker;
 
 // Where processors share no cache, or others take them, threads may cost more than they gain. So jobs go the way that
-// took less time, shared or alone; from time to time the other one is tried, more and more seldom while it is slower.
+// took less time, shared or alone; the other one is tried where a job is lost, and from time to time.
 typedef struct Pace {
     bool is_alone, is_trial;
-    int left, pause; // jobs until the way may change, and between two trials
-    double begun;    // s
-    double least[2]; // s a unit of work, of the latest jobs that were timed, of each way
+    int done, left, pause; // jobs since the way changed, until it may change, and between two trials
+    double begun;          // s
+    double mean[2];        // s a unit of work, of each way; 0: not known
 } Pace;
 
 struct ck_Waves {
@@ -66,24 +70,29 @@ bool ck_waves_are_shared(const ck_Waves *waves) {
     return waves && !waves->pace.is_alone;
 }
 
-static void begin_job(Pace *pace) {
-    if (pace->left <= TRIAL) pace->begun = ck_wall();
+static void begin_job(ck_Waves *waves) {
+    if (waves) waves->pace.begun = ck_wall();
 }
 
-static void end_job(Pace *pace, long amount) {
-    double *least = &pace->least[pace->is_alone], *other = &pace->least[!pace->is_alone];
-    if (pace->left <= TRIAL) {
-        const double took = (ck_wall() - pace->begun) / (double)amount;
-        *least = pace->left == TRIAL ? took : fmin(*least, took);
-    }
-    const bool is_lost = pace->is_trial && (*least - *other) * (double)amount > MOST_LOST;
-    pace->left = is_lost ? 0 : pace->left - 1;
-    if (pace->left > 0) return;
-    const bool is_better = *least < *other;
+static void end_stretch(Pace *pace) {
+    const bool is_better = pace->mean[pace->is_alone] < pace->mean[!pace->is_alone];
     if (pace->is_trial) pace->pause = is_better ? LEAST_PAUSE : pace->pause < MOST_PAUSE ? 2 * pace->pause : MOST_PAUSE;
     if (!pace->is_trial || !is_better) pace->is_alone = !pace->is_alone;
     pace->is_trial = !pace->is_trial;
     pace->left = pace->is_trial ? TRIAL : pace->pause;
+    pace->done = 0;
+}
+
+static void end_job(ck_Waves *waves, long amount) {
+    if (!waves) return;
+    Pace *pace = &waves->pace;
+    const double seconds = ck_wall() - pace->begun, took = seconds / (double)amount,
+                 other = pace->mean[!pace->is_alone];
+    double *mean = &pace->mean[pace->is_alone];
+    *mean = pace->done < 2 ? took : *mean + (took - *mean) / fmin(pace->done, RECENT);
+    pace->done++;
+    const bool is_lost = other > 0 && took > LOST_TIMES * other && seconds > other * (double)amount + LOST_SECONDS;
+    if (--pace->left == 0 || is_lost) end_stretch(pace);
 }
 
 static int part_start(const ck_WaveWork *work, int parts, int part) {
@@ -221,8 +230,8 @@ static void run_wave(void *state, long block, int wave) {
 }
 
 void ck_passes_run(ck_Waves *waves, const ck_Passes *passes) {
-    const int reach = passes->reach,
-              depth = ck_waves_depth(waves, passes->passes, passes->rows, reach, passes->row_bytes);
+    const int reach = passes->reach, depth = ck_waves_depth(ck_waves_are_shared(waves) ? waves : NULL, passes->passes,
+                                                            passes->rows, reach, passes->row_bytes);
     ck_waves_run(waves, &(ck_WaveWork){run_wave, &(Interleaved){passes, depth}, (passes->passes + depth - 1) / depth,
                                        passes->rows + reach * (depth - 1), reach * depth, passes->passes});
 }
@@ -246,36 +255,31 @@ static void run_alone(const ck_WaveWork *work) {
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work) {
     int parts = waves && work->blocks > 1 ? work->waves / (LEAST_PART * work->reach) : 1;
     if (waves && parts > waves->threads) parts = waves->threads;
-    if (parts <= 1) {
-        run_alone(work);
-        return;
-    }
-    begin_job(&waves->pace);
-    if (waves->pace.is_alone)
-        run_alone(work);
-    else
+    begin_job(waves);
+    if (parts > 1 && ck_waves_are_shared(waves))
         run_shared(waves, work, parts);
-    end_job(&waves->pace, work->amount);
+    else
+        run_alone(work);
+    end_job(waves, work->amount);
 }
 
 static void run_halves_alone(const ck_HalvesWork *work) {
     for (long step = 0; step < work->steps; step++) work->run(work->state, step, true, true);
 }
 
+static void run_halves_shared(ck_Waves *waves, const ck_HalvesWork *work) {
+    waves->halves = work;
+    for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
+    call(&waves->workers[1]);
+    run_half(waves, 0);
+    wait_for(&waves->workers[1], work->steps);
+}
+
 void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work) {
-    if (!waves) {
+    begin_job(waves);
+    if (ck_waves_are_shared(waves))
+        run_halves_shared(waves, work);
+    else
         run_halves_alone(work);
-        return;
-    }
-    begin_job(&waves->pace);
-    if (waves->pace.is_alone) {
-        run_halves_alone(work);
-    } else {
-        waves->halves = work;
-        for (int i = 0; i < 2; i++) atomic_store(&waves->workers[i].done, 0);
-        call(&waves->workers[1]);
-        run_half(waves, 0);
-        wait_for(&waves->workers[1], work->steps);
-    }
-    end_job(&waves->pace, work->amount);
+    end_job(waves, work->amount);
 }

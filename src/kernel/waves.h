@@ -28,7 +28,7 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
-// True where the next job is for all threads, as the first three are: see ck_waves_run.
+// True where the next job is for all threads that its work is enough for, as the first two are: see ck_waves_run.
 bool ck_waves_are_shared(const ck_Waves *waves);
 
 // How many passes over rows of so many bytes a block should hold, each lag rows behind the one before, at least 1. A

@@ -9,7 +9,6 @@
 #include "vector.h"
 
 #include <float.h>
-#include <pthread.h>
 #include <stdatomic.h>
 
 // The substep as its formula reads, with the reference integrator's forces.
@@ -261,6 +260,7 @@ static void test_threads(void **state) {
         check_threads(60, columns, "shear: 50", 7, 4);
         check_threads(60, columns, "shear: 50, bend: 20", 7, 4);
     }
+    check_threads(40, 40, "shear: 50", 7, 2);
     fixture_skip_long();
     // beyond a second cache, several passes run interleaved, and fewer of them with threads
     check_threads(300, 90, "shear: 50", 24, 3);
@@ -285,15 +285,15 @@ static void test_depth(void **state) {
     }
 }
 
-// Work that takes a thousand times as long by another thread than by the first one.
+// Work that takes long where threads share it, or where they do not.
 typedef struct Slow {
-    pthread_t first;
+    bool is_slow[2]; // alone, shared
 } Slow;
 
 static void run_slowly(void *state, long step, bool runs_first, bool runs_second) {
-    Slow *slow = state;
+    const Slow *slow = state;
     (void)step;
-    if (!runs_first && runs_second && !pthread_equal(pthread_self(), slow->first))
+    if (slow->is_slow[!(runs_first && runs_second)])
         for (int i = 0; i < 100000; i++) atomic_signal_fence(memory_order_seq_cst);
 }
 
@@ -305,21 +305,50 @@ static bool never_meets(void *state, long step, int half, long *needs) {
     return false;
 }
 
-// Such jobs are soon run by the first thread alone, but for trials: of three jobs at first, and at most as many each
-// time that the pause of eight between them has doubled.
+// How many of so many jobs were shared.
+static int count_shared(ck_Waves *waves, int jobs, const ck_HalvesWork *work) {
+    int shared = 0;
+    for (int i = 0; i < jobs; i++) {
+        shared += ck_waves_are_shared(waves);
+        ck_waves_run_halves(waves, work);
+    }
+    return shared;
+}
+
+// Such jobs are soon run by the first thread alone, but for trials: of four jobs at first, and as many each time that
+// the pause of eight between them has doubled; once they are slow no more, they are shared again.
 static void test_choice(void **state) {
     (void)state;
     ck_Waves *waves;
-    Slow slow = {.first = pthread_self()};
-    int shared = 0;
+    Slow slow = {{false, true}};
+    const ck_HalvesWork work = {run_slowly, never_meets, &slow, 10, 10};
     assert_int_equal(ck_waves_create(&waves, 2, NULL), CK_OK);
     assert_false(ck_waves_are_shared(NULL));
-    for (int i = 0; i < 1000; i++) {
-        shared += ck_waves_are_shared(waves);
-        ck_waves_run_halves(waves, &(ck_HalvesWork){run_slowly, never_meets, &slow, 10, 10});
+    assert_in_range(count_shared(waves, 1000, &work), 4, 4 * 8);
+    slow.is_slow[0] = true, slow.is_slow[1] = false;
+    assert_true(count_shared(waves, 2000, &work) > 800);
+    ck_waves_destroy(waves);
+}
+
+static void run_quickly(void *state, long block, int wave) {
+    (void)state;
+    (void)block;
+    (void)wave;
+}
+
+// A job whose layout is for one thread where it goes alone does not stay alone for that.
+static void test_way_back(void **state) {
+    (void)state;
+    ck_Waves *waves;
+    int shared = 0;
+    assert_int_equal(ck_waves_create(&waves, 2, NULL), CK_OK);
+    for (int i = 0; i < 100; i++) {
+        const bool is_shared = ck_waves_are_shared(waves);
+        shared += is_shared;
+        ck_waves_run(waves, &(ck_WaveWork){run_quickly, NULL, 4, 20, is_shared ? 1 : 20, 4});
     }
     ck_waves_destroy(waves);
-    assert_in_range(shared, 3, 3 * 8);
+    assert_true(shared > 4);
 }
 
 // The widest that are there and no wider than asked for; two doubles always are.
@@ -372,9 +401,10 @@ static void test_fit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),  cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_threads),  cmocka_unit_test(test_depth), cmocka_unit_test(test_choice),
-        cmocka_unit_test(test_vectors),  cmocka_unit_test(test_root),  cmocka_unit_test(test_fit)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),
+                                       cmocka_unit_test(test_contact),  cmocka_unit_test(test_threads),
+                                       cmocka_unit_test(test_depth),    cmocka_unit_test(test_choice),
+                                       cmocka_unit_test(test_way_back), cmocka_unit_test(test_vectors),
+                                       cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

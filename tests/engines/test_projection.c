@@ -158,6 +158,12 @@ static void test_projection(void **state) {
                 compare_projection(sizes[size], springs[i], "0.01", CK_PROJECT_SPRINGS, iterations, 50);
             }
     compare_projection(sizes[2], "rigid: true", "0.01", CK_PROJECT_SPRINGS, 3, 50);
+    // so wide that sweeps share rows
+    for (uint32_t iterations = 1; iterations < 8; iterations++) {
+        compare_projection("rows: 6, columns: 85", springs[1], "0.01", CK_PROJECT_BARS, iterations, 20);
+        compare_projection("rows: 7, columns: 96", springs[0], "0.01", CK_PROJECT_BARS, iterations, 20);
+        compare_projection("rows: 7, columns: 85", springs[2], "0.01", CK_PROJECT_SPRINGS, iterations, 20);
+    }
 }
 
 // Lines against a full solve of each, over sheets as wide as vectors and not, and wider than long.
@@ -181,6 +187,7 @@ static void test_far_bars(void **state) {
     compare_projection("rows: 5, columns: 8", "stiffness: 100, shear: 50", "0.08", CK_PROJECT_BARS, 3, 2);
     compare_projection("rows: 9, columns: 19", "stiffness: 100", "0.06", CK_PROJECT_BARS, 4, 2);
     compare_projection("rows: 12, columns: 33", "stiffness: 100, shear: 50", "0.08", CK_PROJECT_BARS, 2, 2);
+    compare_projection("rows: 9, columns: 85", "stiffness: 100, shear: 50", "0.08", CK_PROJECT_BARS, 3, 2);
 }
 
 // Two bars that are torn down to twice their length, or aside, where they turn by 45° to 75° and there is none of their

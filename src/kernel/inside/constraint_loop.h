@@ -47,7 +47,7 @@ struct ck_ProjectedCloth {
     ck_Real long_scale;                // of bars: the correction beyond which they are long
     int terms;
     long sweeps;            // of this call
-    int depth;              // of which so many run interleaved; of both ways: of those of one
+    int depth;              // of those down, so many run interleaved
     double size, origin[3]; // m, of the cloth; and, of both; 0 but in single precision
     ck_Real *x, *start;     // tiles, m; start: before the last substep; in single precision x is told from there
     ck_Real *from;          // m: where a way is measured from: start, but for impacts
@@ -81,7 +81,7 @@ typedef struct ck_Visit {
 // The most that are in flight together: of one sweep each, or of both halves.
 #define CK_MOST_VISITS 64
 
-// Visits that touch no particle of each other's, or are done colour by colour where they do.
+// Visits that touch no particle of each other's, or, of wide cloths, are done one by one in their order.
 //   ends  the rows, or -1, that each then is done with; set where there is contact, which comes after that
 typedef struct ck_Visits {
     int count;
