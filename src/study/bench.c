@@ -21,6 +21,8 @@
 #define MAX_SIZES 16 // of a growing cloth, whose side doubles
 // How long a repeat lasts at least, s: far above the clock's grain.
 #define REPEAT 0.02
+// Frames in which threads find out whether they gain, before they are timed.
+#define CHOICE 16
 // Sweeps that a start may take to the strain that is asked for.
 #define MOST_SWEEPS 4096
 #define STRAIN 0.04
@@ -132,7 +134,8 @@ static void enter(Entrant *entrant, const Candidate *candidate, const ck_Model *
     if (sets(candidate, "vectors") && (candidate->value >= ck_loops_at(0)->lanes))
         snprintf(entrant->reason, sizeof entrant->reason, "no other than without that setting");
     if (*entrant->reason) return;
-    double once = CK_BENCH_SUBSTEPS * time_frames(entrant, 1);
+    const double once = CK_BENCH_SUBSTEPS * time_frames(entrant, 1);
+    if (wanted.threads > 1) time_frames(entrant, CHOICE);
     entrant->frames = (int)fmax(1, ceil(REPEAT / fmax(once, 1e-9)));
     if (once > options->budget)
         snprintf(entrant->reason, sizeof entrant->reason, "one frame takes longer than the budget");
