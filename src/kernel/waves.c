@@ -25,10 +25,11 @@
 #define TRIAL 4
 // Jobs from one trial to the next: so many where the way has changed, twice as many each time that it has not.
 #define LEAST_PAUSE 8
-#define MOST_PAUSE 1024
-// The latest jobs of a way that its time is the mean of.
+#define MOST_PAUSE 4096
+// The latest jobs of a way that its time is the mean of, and the times of that that one of them counts at most.
 #define RECENT 8
-// A job that takes so many times what the other way took, and so many s more, is lost: others have a processor then.
+#define MOST_COUNTED 3
+// A way that takes so many times what the other one took, and so many s a job more, is left at once.
 #define LOST_TIMES 1.5
 #define LOST_SECONDS 1e-3
 
@@ -44,7 +45,7 @@ typedef struct Worker {
 } Worker;
 
 // Where processors share no cache, or others take them, threads may cost more than they gain. So jobs go the way that
-// took less time, shared or alone; the other one is tried where a job is lost, and from time to time.
+// took less time, shared or alone; the other one is tried where they take much longer, and from time to time.
 typedef struct Pace {
     bool is_alone, is_trial;
     int done, left, pause; // jobs since the way changed, until it may change, and between two trials
@@ -86,12 +87,12 @@ static void end_stretch(Pace *pace) {
 static void end_job(ck_Waves *waves, long amount) {
     if (!waves) return;
     Pace *pace = &waves->pace;
-    const double seconds = ck_wall() - pace->begun, took = seconds / (double)amount,
-                 other = pace->mean[!pace->is_alone];
+    const double took = (ck_wall() - pace->begun) / (double)amount, other = pace->mean[!pace->is_alone];
     double *mean = &pace->mean[pace->is_alone];
-    *mean = pace->done < 2 ? took : *mean + (took - *mean) / fmin(pace->done, RECENT);
+    *mean = pace->done < 2 ? took : *mean + (fmin(took, MOST_COUNTED * *mean) - *mean) / fmin(pace->done, RECENT);
+    const bool is_lost =
+        pace->done > 0 && other > 0 && *mean > LOST_TIMES * other && (*mean - other) * (double)amount > LOST_SECONDS;
     pace->done++;
-    const bool is_lost = other > 0 && took > LOST_TIMES * other && seconds > other * (double)amount + LOST_SECONDS;
     if (--pace->left == 0 || is_lost) end_stretch(pace);
 }
 

@@ -21,7 +21,7 @@
 #define MAX_SIZES 16 // of a growing cloth, whose side doubles
 // How long a repeat lasts at least, s: far above the clock's grain.
 #define REPEAT 0.02
-// Frames in which threads find out whether they gain, before they are timed.
+// Frames in which threads wake and find out whether they gain, before they are timed.
 #define CHOICE 16
 // Sweeps that a start may take to the strain that is asked for.
 #define MOST_SWEEPS 4096
@@ -108,6 +108,11 @@ static double time_frames(Entrant *entrant, int frames) {
     return (clock() - start) / frames / CK_BENCH_SUBSTEPS;
 }
 
+static void time_round(Entrant *entrant) {
+    if (entrant->candidate->settings.threads > 1) time_frames(entrant, CHOICE);
+    entrant->times[entrant->count++] = time_frames(entrant, entrant->frames);
+}
+
 static bool sets(const Candidate *candidate, const char *own) {
     return candidate->own && !strcmp(candidate->own, own);
 }
@@ -135,7 +140,6 @@ static void enter(Entrant *entrant, const Candidate *candidate, const ck_Model *
         snprintf(entrant->reason, sizeof entrant->reason, "no other than without that setting");
     if (*entrant->reason) return;
     const double once = CK_BENCH_SUBSTEPS * time_frames(entrant, 1);
-    if (wanted.threads > 1) time_frames(entrant, CHOICE);
     entrant->frames = (int)fmax(1, ceil(REPEAT / fmax(once, 1e-9)));
     if (once > options->budget)
         snprintf(entrant->reason, sizeof entrant->reason, "one frame takes longer than the budget");
@@ -208,8 +212,7 @@ static ck_Status race(ck_Csv *csv, const ck_BenchBody *body, const ck_BenchOptio
     }
     for (int round = 0; round < options->rounds && !status; round++)
         for (size_t i = 0; i < CANDIDATES; i++)
-            if (!*entrants[i].reason)
-                entrants[i].times[entrants[i].count++] = time_frames(&entrants[i], entrants[i].frames);
+            if (!*entrants[i].reason) time_round(&entrants[i]);
     for (size_t i = 0; i < CANDIDATES && !status; i++)
         add_entrant(csv, body, &models[0], &entrants[i], &entrants[candidates[i].beside], peak);
     leave(entrants, CANDIDATES);
