@@ -1,8 +1,8 @@
 #include "waves.h"
 
+#include "choice.h"
 #include "process.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
@@ -21,18 +21,6 @@
 // Bytes that a core's second cache holds at least.
 #define LEAST_SECOND_CACHE (1 << 19)
 
-// Jobs of a trial of the other way, whose first one is not counted, as it wakes threads.
-#define TRIAL 4
-// Jobs from one trial to the next: so many where the way has changed, twice as many each time that it has not.
-#define LEAST_PAUSE 8
-#define MOST_PAUSE 4096
-// The latest jobs of a way that its time is the mean of, and the times of that that one of them counts at most.
-#define RECENT 8
-#define MOST_COUNTED 3
-// A way that takes so many times what the other one took, and so many s a job more, is left at once.
-#define LOST_TIMES 1.5
-#define LOST_SECONDS 1e-3
-
 typedef enum Call { IDLE, ASLEEP, CALLED } Call;
 
 typedef struct Worker {
@@ -44,21 +32,13 @@ typedef struct Worker {
     sem_t wake;
 } Worker;
 
-// Where processors share no cache, or others take them, threads may cost more than they gain. So jobs go the way that
-// took less time, shared or alone; the other one is tried where they take much longer, and from time to time.
-typedef struct Pace {
-    bool is_alone, is_trial;
-    int done, left, pause; // jobs since the way changed, until it may change, and between two trials
-    double begun;          // s
-    double mean[2];        // s a unit of work, of each way; 0: not known
-} Pace;
-
 struct ck_Waves {
     int threads, parts; // parts: threads that have work in this job
     ck_WaveWork work;
     const ck_HalvesWork *halves; // NULL: the job is of waves
     bool stops;
-    Pace pace;
+    ck_Choice choice;
+    double begun;     // s: this job
     Worker workers[]; // the first is the caller
 };
 
@@ -68,32 +48,15 @@ static void wait_for(const Worker *other, long done) {
 }
 
 bool ck_waves_are_shared(const ck_Waves *waves) {
-    return waves && !waves->pace.is_alone;
+    return waves && !waves->choice.is_alone;
 }
 
 static void begin_job(ck_Waves *waves) {
-    if (waves) waves->pace.begun = ck_wall();
-}
-
-static void end_stretch(Pace *pace) {
-    const bool is_better = pace->mean[pace->is_alone] < pace->mean[!pace->is_alone];
-    if (pace->is_trial) pace->pause = is_better ? LEAST_PAUSE : pace->pause < MOST_PAUSE ? 2 * pace->pause : MOST_PAUSE;
-    if (!pace->is_trial || !is_better) pace->is_alone = !pace->is_alone;
-    pace->is_trial = !pace->is_trial;
-    pace->left = pace->is_trial ? TRIAL : pace->pause;
-    pace->done = 0;
+    if (waves) waves->begun = ck_wall();
 }
 
 static void end_job(ck_Waves *waves, long amount) {
-    if (!waves) return;
-    Pace *pace = &waves->pace;
-    const double took = (ck_wall() - pace->begun) / (double)amount, other = pace->mean[!pace->is_alone];
-    double *mean = &pace->mean[pace->is_alone];
-    *mean = pace->done < 2 ? took : *mean + (fmin(took, MOST_COUNTED * *mean) - *mean) / fmin(pace->done, RECENT);
-    const bool is_lost =
-        pace->done > 0 && other > 0 && *mean > LOST_TIMES * other && (*mean - other) * (double)amount > LOST_SECONDS;
-    pace->done++;
-    if (--pace->left == 0 || is_lost) end_stretch(pace);
+    if (waves) ck_choice_count(&waves->choice, ck_wall() - waves->begun, (double)amount);
 }
 
 static int part_start(const ck_WaveWork *work, int parts, int part) {
@@ -165,7 +128,7 @@ ck_Status ck_waves_create(ck_Waves **out, int threads, ck_Error *error) {
     if (!waves) return ck_fail(error, CK_NO_MEMORY, "out of memory");
     waves->threads = 1;
     waves->stops = false;
-    waves->pace = (Pace){.left = TRIAL, .pause = LEAST_PAUSE};
+    waves->choice = (ck_Choice){0};
     atomic_init(&waves->workers[0].done, 0);
     for (int i = 1; i < threads; i++) {
         Worker *worker = &waves->workers[i];

@@ -28,7 +28,8 @@ typedef struct ck_Waves ck_Waves;
 ck_Status ck_waves_create(ck_Waves **waves, int threads, ck_Error *error);
 void ck_waves_destroy(ck_Waves *waves);
 
-// True where the next job is for all threads that its work is enough for, as the first two are: see ck_waves_run.
+// True where the next job is for all threads that its work is enough for, as the first CK_CHOICE_PAUSE are: see
+// choice.h.
 bool ck_waves_are_shared(const ck_Waves *waves);
 
 // How many passes over rows of so many bytes a block should hold, each lag rows behind the one before, at least 1. A
@@ -63,8 +64,7 @@ void ck_waves_run_halves(ck_Waves *waves, const ck_HalvesWork *work);
 
 // Returns when all is done. Parts of fewer than 3·reach waves are given to fewer threads, and one block to one. Cost:
 // some atomic stores a block; a thread that waits burns its time, and gives way after a while; without a job it sleeps
-// after 0.1 ms. Jobs that threads do not gain by, as their processors are far apart or others take them, are run by the
-// caller alone, which changes no result; the jobs of one owner are alike, so that their times can be compared.
+// after 0.1 ms. Where threads do not gain, the caller runs the job alone but for trials, which changes no result.
 void ck_waves_run(ck_Waves *waves, const ck_WaveWork *work);
 
 #endif

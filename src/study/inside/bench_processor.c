@@ -11,7 +11,7 @@
 #define TRIPS 1000
 #define TRIP_ROUNDS 25
 #define MOST_SECONDS 2.0
-// s: on average it is longer where one of them lost its processor to others for some ms.
+// s: a mean beyond this is dropped, as one of them had lost its processor to others for some ms.
 #define LONGEST_TRIP 2e-6
 
 static double find_peak(void) {
