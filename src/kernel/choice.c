@@ -50,6 +50,6 @@ void ck_choice_count(ck_Choice *choice, double seconds, double amount) {
         if (choice->done >= CK_CHOICE_TRIAL || (choice->done > 1 && choice->lost > MOST_LOST)) end_trial(choice);
     } else {
         choice->worked += seconds;
-        if (choice->done >= CK_CHOICE_PAUSE && choice->worked > PAYS * choice->lost) begin_trial(choice);
+        if (choice->done >= CK_CHOICE_PAUSE && choice->worked > PAYS * fabs(choice->lost)) begin_trial(choice);
     }
 }
