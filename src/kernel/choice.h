@@ -17,7 +17,8 @@ typedef struct ck_Choice {
     int done; // jobs since the way changed; the first one is not counted, as it wakes threads
     double seconds[2], amount[2], jobs[2]; // of the latest that were counted, shared and alone
     double worked;                         // s since the last trial
-    double lost;                           // s that the trial took more than the other way
+    // s that the last trial took more than the other way; less than 0: what one back would take more
+    double lost;
 } ck_Choice;
 
 // Counts a job: how long it took, s, and how much work it was, in any unit, more than 0.
