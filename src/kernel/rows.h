@@ -72,9 +72,12 @@ typedef struct ck_Place {
     long single, tile;
 } ck_Place;
 
-CK_INLINE ck_Place ck_rows_place(const ck_Rows *rows, int row, int vector) {
-    const long single = row * rows->stride + (long)vector * CK_STRIPE;
+CK_INLINE ck_Place ck_place_of(long single) {
     return (ck_Place){single, 3 * single};
+}
+
+CK_INLINE ck_Place ck_rows_place(const ck_Rows *rows, int row, int vector) {
+    return ck_place_of(row * rows->stride + (long)vector * CK_STRIPE);
 }
 
 // The vector that is reach columns to the right of a row's vector.
