@@ -3,9 +3,12 @@
 
 #include "collider.h"
 #include "runge_kutta.h"
+
 #include "springs.h"
 #include "statistics.h"
 #include "vector.h"
+
+#include <float.h>
 
 // The largest distance of the reference from the closed form of a scene up to its horizon, / size.
 static double off_of(const char *scene, int *frames) {
@@ -271,7 +274,8 @@ static void test_dense_points(void **state) {
     const double off = apart(&fixture.model, &path.fine, &finer, path.horizon);
     print_message("agrees to %.1e, off by %.1e at %d substeps\n", path.agreement, off, path.substeps);
     assert_true(path.agreement > 0);
-    assert_true(off <= path.agreement);
+    // and what as many steps round, at random
+    assert_true(off <= path.agreement + DBL_EPSILON * sqrt(16.0 * path.substeps * fixture.model.frame_count));
     ck_trajectory_free(&finer);
     ck_reference_path_free(&path);
     fixture_free(&fixture);

@@ -91,7 +91,7 @@ const char *ck_truth_equilibrium_leaves_open(const ck_Model *model) {
 // and a scene that cannot be told from rest no better than that has that uncertainty.
 static ck_Status integrate_release(ck_Trajectory *release, const ck_Model *model, ck_Error *error) {
     const int substeps = (int)release_substeps(model);
-    return substeps > 0 ? ck_reference_integrate(release, model, substeps, 0, 0, error)
+    return substeps > 0 ? ck_reference_follow(release, model, substeps, error)
                         : ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
 }
 

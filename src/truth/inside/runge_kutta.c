@@ -5,6 +5,7 @@
 #include "process.h"
 #include "springs.h"
 #include "statistics.h"
+#include "tableau.h"
 #include "time_scale.h"
 #include "touch.h"
 #include "vector.h"
@@ -19,14 +20,15 @@
 // In contact, where the method is of the second to third order: what a nudge grows to up to the horizon.
 #define AGREEMENT_IN_CONTACT 1e-5
 #define GROWTH 1e4
-// Steps of a whole path that are tried at most; a 20×20 cloth takes some 50 µs each.
-#define MAX_STEPS 4e6
+// Stages of a whole path that are tried at most; one takes a 20×20 cloth some 12 µs.
+#define MOST_FORCES 1.6e7
 
 // A path on its way: y = {x, v}, [6*n].
 typedef struct Walk {
-    ck_Model now;                  // without what is a bar, and with the pins there still are
-    ck_Bars *bars;                 // NULL: none
-    double *y, *stage, *begun, *k; // k1 … k4 are {v, a}, each [6*n]
+    ck_Model now;  // without what is a bar, and with the pins there still are
+    ck_Bars *bars; // NULL: none
+    const ck_Tableau *method;
+    double *y, *stage, *begun, *k; // k_1, k_2, … are {v, a}, each [6*n]
     bool has_failed;               // bars hold one another
     const char *refusal;           // NULL: none; what no smaller step mends
     ck_Touches *touches;           // NULL: no colliders
@@ -57,22 +59,38 @@ static void constrain(Walk *walk, double time, int side, const double *y, double
     walk->has_failed |= !ck_bars_accelerate(walk->bars, y, y + half, k + half);
 }
 
-// One step, from a state whose free accelerations are known. Source: Kutta 1901.
-static void runge_kutta(Walk *walk, double time, double dt) {
-    static const double nodes[4] = {0, 0.5, 0.5, 1}, weights[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+// The method sees the kinks of these; without them forces are smooth.
+static const ck_Tableau *method_of(const ck_Model *model) {
+    const bool has_kinks = model->collider_count || (model->terms & (CK_TERM_WIND | CK_TERM_PULL_ONLY));
+    return has_kinks ? &ck_tableau_fourth : &ck_tableau_eighth;
+}
+
+// y + dt·Σ shares_m·k_m, of so many, into sum: y itself, or the stage. The sum comes first, as y has the larger digits.
+static void add_stages(const Walk *walk, int count, const double *shares, double dt, double *sum) {
     const size_t whole = 6 * (size_t)walk->now.particle_count;
-    double *y = walk->y, *k = walk->k;
-    constrain(walk, time, 1, y, k);
-    for (int i = 1; i < 4; i++) {
-        double *now = k + (size_t)i * whole, *before = now - whole;
-        const double at = time + nodes[i] * dt;
-        for (size_t j = 0; j < whole; j++) walk->stage[j] = y[j] + nodes[i] * dt * before[j];
-        push(walk, at, i < 3 ? 1 : -1, walk->stage);
-        constrain(walk, at, i < 3 ? 1 : -1, walk->stage, now);
+    double *stage = walk->stage;
+    memset(stage, 0, whole * sizeof *stage);
+    for (int m = 0; m < count; m++) {
+        const double share = shares[m], *k = walk->k + (size_t)m * whole;
+        for (size_t j = 0; j < whole && share != 0; j++) stage[j] += share * k[j];
     }
-    for (size_t j = 0; j < whole; j++)
-        y[j] += dt * (weights[0] * k[j] + weights[1] * k[whole + j] + weights[2] * k[2 * whole + j] +
-                      weights[3] * k[3 * whole + j]);
+    for (size_t j = 0; j < whole; j++) sum[j] = walk->y[j] + dt * stage[j];
+}
+
+// One step, from a state whose free accelerations are known.
+static void runge_kutta(Walk *walk, double time, double dt) {
+    const ck_Tableau *method = walk->method;
+    const size_t whole = 6 * (size_t)walk->now.particle_count;
+    double *y = walk->y;
+    constrain(walk, time, 1, y, walk->k);
+    for (int i = 1; i < method->stages; i++) {
+        const double at = time + method->nodes[i] * dt;
+        const int side = method->nodes[i] < 1 ? 1 : -1;
+        add_stages(walk, i, method->matrix[i], dt, walk->stage);
+        push(walk, at, side, walk->stage);
+        constrain(walk, at, side, walk->stage, walk->k + (size_t)i * whole);
+    }
+    add_stages(walk, method->stages, method->weights, dt, y);
     if (walk->now.driven_count) ck_driven_place(&walk->now, time + dt, -1, y, y + whole / 2);
     if (walk->bars) walk->has_failed |= !ck_bars_project(walk->bars, y, y + whole / 2);
     if (walk->touches) ck_touches_project(walk->touches, time + dt, y, y + whole / 2);
@@ -194,34 +212,36 @@ static void end_walk(Walk *walk) {
     free(walk->y);
 }
 
-// The method is stable to 2.83/ω, of which it starts at a quarter, and to 2.79 over a rate of damping.
 static ck_Status first_substeps(const ck_Model *model, int *substeps) {
     double frequency;
     // bars do not stretch; waves across them are as fast as their tension makes them
     if (model->terms & CK_TERM_RIGID) {
-        *substeps =
-            (int)ck_stability_substeps(model, fmin(model->step / 4, 0.35 * ck_stability_transverse_time(model)));
+        *substeps = (int)ck_stability_substeps(
+            model, fmin(model->step / 4, 0.5 * method_of(model)->first_swing * ck_stability_transverse_time(model)));
         return CK_OK;
     }
     ck_Status status = ck_stability_frequency(model, &frequency);
-    const double longest = fmin(0.7 / fmax(frequency, 1e-300), 2.5 / fmax(ck_stability_damping_rate(model), 1e-300));
+    const ck_Tableau *method = method_of(model);
+    const double longest = fmin(method->first_swing / fmax(frequency, 1e-300),
+                                method->first_decay / fmax(ck_stability_damping_rate(model), 1e-300));
     *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, longest));
     return status;
 }
 
-static ck_Status start_walk(Walk *walk, const ck_Model *model, int substeps, ck_Error *error) {
+static ck_Status start_walk(Walk *walk, const ck_Model *model, const ck_Tableau *method, int substeps,
+                            ck_Error *error) {
     const size_t count = (size_t)model->particle_count, whole = 6 * count;
     int first;
-    *walk = (Walk){.now = *model, .substeps = substeps};
-    walk->y = malloc(9 * whole * sizeof(double));
+    *walk = (Walk){.now = *model, .substeps = substeps, .method = method};
+    walk->y = malloc((5 + (size_t)method->stages) * whole * sizeof(double));
     walk->now.pinned = malloc(count * sizeof(bool));
     walk->now.springs = malloc(((size_t)model->spring_count + 1) * sizeof(ck_Spring));
     if (!walk->y || !walk->now.pinned || !walk->now.springs)
         return ck_fail(error, CK_NO_MEMORY, "%s: out of memory", model->name);
     walk->stage = walk->y + whole;
-    walk->k = walk->y + 2 * whole;
-    walk->begun = walk->y + 6 * whole;
-    walk->free = walk->y + 8 * whole;
+    walk->begun = walk->y + 2 * whole;
+    walk->free = walk->y + 4 * whole;
+    walk->k = walk->y + 5 * whole;
     memcpy(walk->now.pinned, model->pinned, count * sizeof(bool));
     walk->now.spring_count = 0;
     for (int i = 0; i < model->spring_count; i++)
@@ -234,11 +254,11 @@ static ck_Status start_walk(Walk *walk, const ck_Model *model, int substeps, ck_
     return status ? status : ck_touches_create(&walk->touches, model, walk->now.pinned, error);
 }
 
-ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
-                                 uint64_t seed, ck_Error *error) {
+static ck_Status integrate(ck_Trajectory *trajectory, const ck_Model *model, const ck_Tableau *method, int substeps,
+                           double nudge, uint64_t seed, ck_Error *error) {
     Walk walk = {.y = NULL};
     ck_Status status = ck_trajectory_create(trajectory, model, error);
-    if (!status) status = start_walk(&walk, model, substeps, error);
+    if (!status) status = start_walk(&walk, model, method, substeps, error);
     const size_t whole = 6 * (size_t)model->particle_count;
     if (!status && nudge > 0) nudge_start(model, walk.y, nudge, seed);
     if (!status && walk.bars) walk.has_failed = !ck_bars_project(walk.bars, walk.y, walk.y + whole / 2);
@@ -258,6 +278,15 @@ ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *mode
     }
     end_walk(&walk);
     return status;
+}
+
+ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
+                                 uint64_t seed, ck_Error *error) {
+    return integrate(trajectory, model, method_of(model), substeps, nudge, seed, error);
+}
+
+ck_Status ck_reference_follow(ck_Trajectory *trajectory, const ck_Model *model, int substeps, ck_Error *error) {
+    return integrate(trajectory, model, &ck_tableau_fourth, substeps, 0, 0, error);
 }
 
 // largest distance of a particle between two paths at one frame, / size
@@ -311,7 +340,8 @@ double ck_reference_work(const ck_Model *model) {
     if (first_substeps(model, &substeps)) return INFINITY;
     // a bar's share of a sparse factor
     const double bar = model->terms & CK_TERM_RIGID ? 200 : 1;
-    return 4.0 * substeps * model->frame_count * (bar * model->spring_count + model->particle_count);
+    return (double)method_of(model)->stages * substeps * model->frame_count *
+           (bar * model->spring_count + model->particle_count);
 }
 
 // Steps of a path at twice its substeps, which are at least two between two jumps of what moves.
@@ -320,6 +350,10 @@ static double steps_of_next(const ck_ReferencePath *path, const ck_Model *model)
     for (int i = 0; i < model->path_count; i++) jumps += model->paths[i].point_count + 2;
     if (first_substeps(model, &first)) return INFINITY;
     return 2.0 * path->substeps * (model->frame_count + (double)jumps / first);
+}
+
+static bool is_beyond(const ck_ReferencePath *path, const ck_Model *model) {
+    return method_of(model)->stages * steps_of_next(path, model) > MOST_FORCES;
 }
 
 static double wanted_agreement(const ck_Model *model) {
@@ -332,7 +366,7 @@ static ck_Status refine(ck_ReferencePath *path, const ck_Model *model, ck_Error 
     ck_Status status = ck_reference_integrate(&path->fine, model, path->substeps, 0, 0, error);
     path->agreement = INFINITY;
     while (!status && path->agreement > wanted_agreement(model)) {
-        if (steps_of_next(path, model) > MAX_STEPS)
+        if (is_beyond(path, model))
             return ck_fail(error, CK_REFUSED, "%s: two references still differ by %.2g of the size at %d steps a frame",
                            model->name, path->agreement, path->substeps);
         ck_trajectory_free(&path->coarse);
@@ -363,8 +397,9 @@ static ck_Status check_model(const ck_Model *model, const ck_ReferencePath *path
     if ((model->terms & CK_TERM_RIGID) && !ck_springs_start_at_rest(model))
         return ck_fail(error, CK_REFUSED, "%s: its bars do not start at their lengths: how they snap is not known",
                        model->name);
-    if (steps_of_next(path, model) > MAX_STEPS)
-        return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g steps", model->name, MAX_STEPS);
+    if (is_beyond(path, model))
+        return ck_fail(error, CK_REFUSED, "%s: a reference takes more than %g evaluations of its forces", model->name,
+                       MOST_FORCES);
     return CK_OK;
 }
 
@@ -380,7 +415,7 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
     while (!status) {
         status = refine(path, &part, error);
         if (status || part.frame_count == model->frame_count || path->horizon < part.frame_count) break;
-        part.frame_count = part.frame_count > model->frame_count / 2 ? model->frame_count : 2 * part.frame_count;
+        part.frame_count = model->frame_count;
         path->substeps /= 2;
         ck_reference_path_free(path);
     }

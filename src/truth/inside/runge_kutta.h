@@ -6,13 +6,17 @@
 #include "status.h"
 #include "trajectory.h"
 
-// The path from the model's start by the classical fourth-order Runge–Kutta method, substeps to a frame. Rigid bars are
-// constraints on accelerations, and put right after each step; a step ends where a moved pin's speed jumps.
+// The path from the model's start by a Runge–Kutta method, substeps to a frame: of the eighth order; in contact and
+// where forces have kinks, which no order survives, of the fourth. Rigid bars are constraints on accelerations, and put
+// right after each step; a step ends where a moved pin's speed jumps.
 //   nudge  m, added to the start of every free coordinate with a sign of its own, by seed; 0: none
 // Writes all frames; stops early, with fewer frames, where numbers leave the finite.
-// Errors: CK_NO_MEMORY. Free trajectory in any case. Source: Kutta 1901.
+// Errors: CK_NO_MEMORY. Free trajectory in any case. See tableau.h.
 ck_Status ck_reference_integrate(ck_Trajectory *trajectory, const ck_Model *model, int substeps, double nudge,
                                  uint64_t seed, ck_Error *error);
+
+// The same by the fourth order, which the fewest forces keep stable: where a body comes to in the end.
+ck_Status ck_reference_follow(ck_Trajectory *trajectory, const ck_Model *model, int substeps, ck_Error *error);
 
 // The nudge, in sizes, whose growth says how long a path can be trusted.
 #define CK_REFERENCE_NUDGE 1e-9

@@ -17,8 +17,10 @@ typedef struct Touch {
     bool sticks;   // held by friction
     double way[3]; // unit: the direction in which it slid at the start of the step; 0: it did not
     Event event;
-    int hit;     // of an impact the collider, of a border the axis
-    double when; // share of the step
+    int hit;               // of an impact the collider, of a border the axis
+    double when;           // share of the step
+    double from[3], clear; // m: a place, and how far from there all colliders are but one; 0: not known
+    int but;
 } Touch;
 
 struct ck_Touches {
@@ -357,6 +359,36 @@ static double passing_share(const ck_Touches *touches, int particle, int collide
     return 2;
 }
 
+// True where nothing that it does not touch can be met on the chord to a place: gaps change by no more than the way.
+static bool is_clear(const ck_Touches *touches, int particle, const double *end) {
+    const Touch *touch = &touches->touch[particle];
+    const double *x = touches->position + 3 * particle;
+    double since = 0, chord = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        since += (end[axis] - touch->from[axis]) * (end[axis] - touch->from[axis]);
+        chord += (end[axis] - x[axis]) * (end[axis] - x[axis]);
+    }
+    // (a + b)² ≤ 2·(a² + b²)
+    return touch->but == touch->collider && touch->clear * touch->clear > 2 * (since + chord);
+}
+
+// The first impact of a particle in the step, but on what it touches already.
+static void note_impacts(ck_Touches *touches, int particle, double dt, const double *x, const double *v) {
+    Touch *touch = &touches->touch[particle];
+    double clear = INFINITY;
+    if (is_clear(touches, particle, x)) return;
+    for (int c = 0; c < touches->model->collider_count; c++) {
+        if (c == touch->collider) continue;
+        const double gap = surface_at(touches, c, touches->time + dt, -1, x).gap;
+        const double inside = gap < -touches->thin ? 1 : passing_share(touches, particle, c, dt, x, v, gap);
+        if (inside <= 1) note(touch, IMPACT, c, impact_share(touches, particle, c, dt, x, v, inside));
+        clear = fmin(clear, touches->model->colliders[c].path ? 0 : gap);
+    }
+    touch->clear = fmax(0, clear);
+    touch->but = touch->collider;
+    memcpy(touch->from, x, sizeof touch->from);
+}
+
 double ck_touches_first_event(ck_Touches *touches, double dt, const double *position, const double *velocity,
                               const double *acceleration) {
     double first = 2;
@@ -366,13 +398,7 @@ double ck_touches_first_event(ck_Touches *touches, double dt, const double *posi
         touch->when = 2;
         if (touches->pinned[i]) continue;
         if (touch->collider >= 0) note_change(touches, i, dt, position, velocity, acceleration);
-        for (int c = 0; c < touches->model->collider_count; c++) {
-            if (c == touch->collider) continue;
-            const double *x = position + 3 * i, *v = velocity + 3 * i;
-            const double gap = surface_at(touches, c, touches->time + dt, -1, x).gap;
-            const double inside = gap < -touches->thin ? 1 : passing_share(touches, i, c, dt, x, v, gap);
-            if (inside <= 1) note(touch, IMPACT, c, impact_share(touches, i, c, dt, x, v, inside));
-        }
+        note_impacts(touches, i, dt, position + 3 * i, velocity + 3 * i);
         first = fmin(first, touch->when);
     }
     // those at the same time are one event
