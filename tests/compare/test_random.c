@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #ifdef __SANITIZE_ADDRESS__
-#define SCENES 4
+#define SCENES 2
 #else
-#define SCENES 40
+#define SCENES 20
 #endif
 
 // Seconds of a run, of CPU and on the wall, and of what the parent does beside.
@@ -248,7 +248,8 @@ static int number_of(const char *name, int otherwise) {
 
 static void test_random_scenes(void **state) {
     (void)state;
-    const int first = number_of("RANDOM_SEED", 1), scenes = number_of("RANDOM_SCENES", SCENES);
+    const int first = number_of("RANDOM_SEED", 1),
+              scenes = number_of("RANDOM_SCENES", fixture_asks_all() ? 2 * SCENES : SCENES);
     int counts[CK_RUN_STATUS_COUNT] = {0}, valid = 0;
     double longest = 0;
     for (int seed = first; seed < first + scenes; seed++) {

@@ -176,9 +176,9 @@ void commands_assert_mends(const char *directory, const Command *command, const 
     snapshot_free(&left);
 }
 
-int number_of(const char *name, int otherwise) {
+int number_of(const char *name, int few, int all) {
     const char *text = getenv(name);
-    return text ? atoi(text) : otherwise;
+    return text ? atoi(text) : fixture_asks_all() ? all : few;
 }
 
 bool is_asked(const Command *command) {

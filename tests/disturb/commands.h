@@ -40,8 +40,8 @@ Counts commands_watch(const char *directory, const Command *command, Snapshot *u
 void commands_assert_mends(const char *directory, const Command *command, const Snapshot *undisturbed,
                            const char *what);
 
-// A number of the environment.
-int number_of(const char *name, int otherwise);
+// A number of the environment; without it few, or where all is asked for that.
+int number_of(const char *name, int few, int all);
 
 // False where ONLY names another command.
 bool is_asked(const Command *command);

@@ -8,7 +8,8 @@
 #include <signal.h>
 #include <sys/wait.h>
 
-#define KILLS 10
+#define KILLS 3
+#define ALL_KILLS 10
 
 static char directory[100], said[20000];
 
@@ -26,7 +27,7 @@ static void kill_once(const Command *command, const Snapshot *undisturbed, long 
 static void test_kills(void **state) {
     static const int signals[] = {SIGKILL, SIGTERM, SIGKILL, SIGINT, SIGKILL, SIGHUP};
     (void)state;
-    const int kills = number_of("KILLS", KILLS);
+    const int kills = number_of("KILLS", KILLS, ALL_KILLS);
     int all = 0;
     snprintf(directory, sizeof directory, "%s/killed", fixture_directory);
     for (size_t i = 0; i < command_count; i++) {
@@ -35,7 +36,8 @@ static void test_kills(void **state) {
         const long moments = commands_watch(directory, &commands[i], &undisturbed).moments;
         for (int k = 0; k < kills && k < moments; k++, all++) {
             const long moment = moments <= kills ? k + 1 : 1 + k * (moments - 1) / (kills - 1);
-            kill_once(&commands[i], &undisturbed, moment, signals[(size_t)k % (sizeof signals / sizeof *signals)]);
+            kill_once(&commands[i], &undisturbed, moment,
+                      signals[((size_t)k + i) % (sizeof signals / sizeof *signals)]);
         }
         print_message("%s: %ld moments, %d files\n", commands[i].name, moments, undisturbed.count);
         snapshot_free(&undisturbed);

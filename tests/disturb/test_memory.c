@@ -8,7 +8,8 @@
 
 #include <sys/wait.h>
 
-#define ALLOCATIONS 8
+#define ALLOCATIONS 2
+#define ALL_ALLOCATIONS 8
 
 static char directory[100], said[20000];
 
@@ -38,8 +39,8 @@ static void fail_once(const Command *command, const Snapshot *undisturbed, long 
 
 static void test_no_memory(void **state) {
     (void)state;
-    const int wanted = number_of("ALLOCATIONS", ALLOCATIONS);
-    ck_Random random = ck_random_seed((uint64_t)number_of("SEED", 1));
+    const int wanted = number_of("ALLOCATIONS", ALLOCATIONS, ALL_ALLOCATIONS);
+    ck_Random random = ck_random_seed((uint64_t)number_of("SEED", 1, 1));
     Ends all = {0};
     snprintf(directory, sizeof directory, "%s/starved", fixture_directory);
     for (size_t i = 0; i < command_count; i++) {

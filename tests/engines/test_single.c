@@ -57,6 +57,7 @@ static void write_scene(char text[600], const char *place, const char *more, int
 // any nudge. A kilometre away the same, to what doubles say of places there.
 static void test_precision(void **state) {
     (void)state;
+    fixture_skip_sanitized();
     static const double far[3] = {1000, 0, -1000};
     static const char hung[] = "pins: [top_left, top_right]\nnoise: {amplitude: 1e-3, seed: 3}\n";
     for (int columns = 8; columns < 40; columns += 8)
@@ -105,6 +106,7 @@ static void test_flight(void **state) {
 // The same bits by all vectors that fuse, and by any number of threads.
 static void test_bits(void **state) {
     (void)state;
+    fixture_skip_sanitized();
     for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
         char text[600];
         ck_Trajectory wide, narrow, shared;

@@ -130,6 +130,7 @@ static void test_unwritable_output(void **state) {
 // The six files, whole, with the columns of the contract; and twice the same bytes in four of them.
 static void test_comparison_repeats(void **state) {
     (void)state;
+    fixture_skip_sanitized();
     static const char *const files[] = {"runs.csv",       "machine.csv", "metrics.csv",
                                         "deviations.csv", "ledger.csv",  "series.csv"};
     static const char *const headers[] = {

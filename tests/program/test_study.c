@@ -145,7 +145,7 @@ static void test_shards(void **state) {
 static void test_two_at_once(void **state) {
     (void)state;
     fixture_skip_long();
-    pid_t busy = start("stability rope_hanging --jobs 1 --out %s/busy");
+    pid_t busy = start("stability rope_hanging -e native-verlet -e bullet-pbd -e ode-quick --jobs 1 --out %s/busy");
     usleep(500000);
     finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);
     kill(busy, SIGKILL);
@@ -154,7 +154,7 @@ static void test_two_at_once(void **state) {
     assert_true(size > 0);
     finish("stability rope_catenary --engine native-verlet --out %s/busy", 2);
     assert_true(size_of("busy/stability.journal") == size);
-    finish("stability rope_hanging --jobs 2 --out %s/busy", 0);
+    finish("stability rope_hanging -e native-verlet -e bullet-pbd -e ode-quick --jobs 2 --out %s/busy", 0);
 }
 
 // The growth of one damped mode over many steps of velocity Verlet with predicted velocity, or of symplectic Euler with
@@ -332,6 +332,7 @@ static void test_demo(void **state) {
 // Every engine that takes a body is timed on it.
 static void test_bench(void **state) {
     (void)state;
+    fixture_skip_unasked();
     char arguments[100];
     snprintf(arguments, sizeof arguments, "bench --rounds 1 --largest 17 --out %s/bench", fixture_directory);
     assert_int_equal(fixture_program(arguments), 0);
@@ -346,6 +347,7 @@ static void test_bench(void **state) {
 // A part of it by its name, or by its body's.
 static void test_bench_only(void **state) {
     (void)state;
+    fixture_skip_unasked();
     static const struct {
         const char *only, *is_there, *is_not;
     } cases[] = {{"growth", ",growth_step_time,", ",update_time,"}, {"rope", "rope,1000,999,native-verlet,,", "mesh"}};

@@ -103,6 +103,7 @@ static void test_no_iterations(void **state) {
 // Work in sweeps a second at most; for grids so small that all that is cheaper is tried, it is exact.
 static void test_program(void **state) {
     (void)state;
+    fixture_skip_sanitized();
     static const struct {
         const char *arguments, *row;
         double work;

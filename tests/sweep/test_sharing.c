@@ -9,16 +9,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-// The sanitizers make processes slow to start: there fewer cases do.
-#ifdef __SANITIZE_ADDRESS__
-#define STUDY "tests/sweep/studies/few.yaml"
-#define ENGINES " -e native-verlet -e still -e ode-quick"
-#define LEAST_CASES (4 + 8 * 3)
-#else
-#define STUDY "tests/sweep/studies/five_hundred.yaml"
-#define ENGINES ""
-#define LEAST_CASES 500
+// Of all that there is five hundred cases; else, and under the sanitizers, which make processes slow to start, fewer
+// do.
+typedef struct Size {
+    const char *study, *engines;
+    int least; // cases
+} Size;
+
+static Size size_of(void) {
+#ifndef __SANITIZE_ADDRESS__
+    if (fixture_asks_all()) return (Size){"tests/sweep/studies/five_hundred.yaml", "", 500};
 #endif
+    return (Size){"tests/sweep/studies/few.yaml", "-e native-verlet -e still -e ode-quick", 4 + 8 * 3};
+}
 
 // What two runs of the same do not have in common.
 static bool is_timing(const char *column) {
@@ -57,19 +60,25 @@ static void assert_same_results(const char *one, const char *other) {
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) assert_same_table(one, other, layouts[i]);
 }
 
-static void run_study(const char *study, const char *out, const char *options) {
+// The words of a command that runs it into a folder.
+static void write_words(char line[600], const char *out, const char *options) {
+    const Size size = size_of();
+    snprintf(line, 600, "study %s --out %s/%s %s %s", size.study, fixture_directory, out, size.engines, options);
+}
+
+static void run_study(const char *out, const char *options) {
     char line[600];
-    snprintf(line, sizeof line, "study %s --out %s/%s" ENGINES " %s", study, fixture_directory, out, options);
+    write_words(line, out, options);
     if (fixture_program(line)) fail_msg("%s fails: %s", line, fixture_read("output"));
 }
 
 static void test_whole(void **state) {
     (void)state;
     size_t distinct;
-    run_study(STUDY, "whole", "");
+    run_study("whole", "");
     const int records = fixture_count_cases("whole", &distinct);
     assert_int_equal((size_t)records, distinct);
-    assert_true(records >= LEAST_CASES);
+    assert_true(records >= size_of().least);
 }
 
 // Cases that are done by now, as the board's bytes say.
@@ -88,16 +97,16 @@ static void test_killed(void **state) {
     char line[600];
     size_t distinct;
     srand(24);
-    snprintf(line, sizeof line, "study " STUDY " --out %s/killed" ENGINES, fixture_directory);
+    write_words(line, "killed", "");
     for (int i = 0; i < 10; i++) {
-        const int until = count_done("killed") + 1 + rand() % (LEAST_CASES / 12);
+        const int until = count_done("killed") + 1 + rand() % (size_of().least / 12);
         const pid_t program = fixture_start(line);
         int how;
         while (count_done("killed") < until && !waitpid(program, &how, WNOHANG)) usleep(200);
         kill(program, SIGKILL);
         waitpid(program, &how, 0);
     }
-    run_study(STUDY, "killed", "");
+    run_study("killed", "");
     assert_same_results("whole", "killed");
     // a case that was killed between its record and its mark may be there twice, but each is
     fixture_count_cases("killed", &distinct);
@@ -112,7 +121,7 @@ static void test_shared(void **state) {
     char line[600];
     pid_t programs[4];
     size_t distinct;
-    snprintf(line, sizeof line, "study " STUDY " --out %s/shared" ENGINES, fixture_directory);
+    write_words(line, "shared", "");
     for (int i = 0; i < 4; i++) programs[i] = fixture_start(line);
     for (int i = 0; i < 4; i++) {
         int how;
@@ -128,12 +137,12 @@ static void test_shared(void **state) {
 static void test_parts(void **state) {
     (void)state;
     char line[900];
-    run_study(STUDY, "part1", "--shard 1/2");
-    run_study(STUDY, "part2", "--shard 2/2");
+    run_study("part1", "--shard 1/2");
+    run_study("part2", "--shard 2/2");
     const char *d = fixture_directory;
     snprintf(line, sizeof line, "merge %s/joined %s/part1 %s/part2", d, d, d);
     assert_int_equal(fixture_program(line), 0);
-    run_study(STUDY, "joined", "--kept");
+    run_study("joined", "--kept");
     assert_same_results("whole", "joined");
 }
 
@@ -151,7 +160,7 @@ static void test_damage(void **state) {
     assert_int_equal(system(line), 0);
     fixture_count_cases("damaged", &after);
     assert_true(after < before);
-    run_study(STUDY, "damaged", "");
+    run_study("damaged", "");
     assert_same_results("whole", "damaged");
 }
 
@@ -163,7 +172,7 @@ static void test_report_of_many(void **state) {
     assert_int_equal(fixture_program(line), 0);
     char *chart = fixture_read("whole/charts/sweep.csv"), *page = fixture_read("whole/index.html");
     assert_non_null(chart);
-    if (LEAST_CASES >= 500) assert_non_null(strstr(page, "\"scenes\":[]"));
+    if (size_of().least >= 500) assert_non_null(strstr(page, "\"scenes\":[]"));
     free(chart);
     free(page);
 }
@@ -171,6 +180,7 @@ static void test_report_of_many(void **state) {
 // Through a Slurm of this machine's own; where it cannot run, why is said.
 static void test_slurm(void **state) {
     (void)state;
+    fixture_skip_unasked();
     char line[800];
 #ifdef __SANITIZE_ADDRESS__
     skip();

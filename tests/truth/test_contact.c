@@ -175,6 +175,7 @@ static void test_ball(void **state) {
 // The closed form itself: energy is kept on the ball and in the air, and it leaves at cos θ = 2/3·cos θ_0.
 static void test_sphere_truth(void **state) {
     (void)state;
+    fixture_skip_sanitized();
     // long, and in memory what shorter ones do
     if (fixture_leaves_natives()) skip();
     TruthFixture fixture;
