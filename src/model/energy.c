@@ -6,10 +6,11 @@
 
 #include <string.h>
 
-ck_Energy ck_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+// Without what springs hold, which is most of the work.
+static ck_Energy without_springs(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
     const double *position = ck_trajectory_position(trajectory, frame),
                  *velocity = ck_trajectory_velocity(trajectory, frame);
-    ck_Energy energy = {.elastic = ck_springs_energy(model, position) + ck_hinges_energy(model, position)};
+    ck_Energy energy = {0};
     for (int i = 0; i < model->particle_count; i++) {
         double field[3];
         // a pin neither moves nor falls, until it is let go
@@ -28,6 +29,13 @@ ck_Energy ck_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, i
     return energy;
 }
 
+ck_Energy ck_energy_at(const ck_Model *model, const ck_Trajectory *trajectory, int frame) {
+    const double *position = ck_trajectory_position(trajectory, frame);
+    ck_Energy energy = without_springs(model, trajectory, frame);
+    energy.elastic = ck_springs_energy(model, position) + ck_hinges_energy(model, position);
+    return energy;
+}
+
 double ck_energy_total(const ck_Energy *energy) {
     return energy->kinetic + energy->elastic + energy->field;
 }
@@ -41,7 +49,7 @@ double ck_energy_scale(const ck_Model *model, const ck_Trajectory *trajectory) {
     ck_model_mean_field(model, field);
     if (starts_still) scale = fmax(scale, ck_length(field) * mass * model->size);
     for (int frame = 1; frame < trajectory->frame_count; frame++)
-        drop = fmax(drop, -ck_energy_at(model, trajectory, frame).field);
+        drop = fmax(drop, -without_springs(model, trajectory, frame).field);
     return fmax(scale, drop);
 }
 
@@ -73,7 +81,7 @@ double ck_energy_motion_gain(const ck_Model *model, const ck_Trajectory *traject
     ck_Energy start = ck_energy_at(model, trajectory, 0);
     double total = ck_energy_total(&start), gained = 0;
     for (int frame = 1; frame < trajectory->frame_count; frame++) {
-        ck_Energy energy = ck_energy_at(model, trajectory, frame);
+        ck_Energy energy = without_springs(model, trajectory, frame);
         double motion = energy.kinetic + energy.field;
         if (frame < first)
             total = fmax(total, motion);
