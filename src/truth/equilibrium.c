@@ -248,11 +248,29 @@ static bool search_line(Newton *newton, const double *step, double *energy, doub
     return false;
 }
 
+// So many steps in which the energy only rounds and the residual is not halved end on a saddle: a step off it is told
+// from rounding by its residual alone, and comes to nothing.
+#define STANDSTILL 100
+
+typedef struct Progress {
+    double energy, residual;
+} Progress;
+
+// True where so many steps came to nothing; asked after each.
+static bool stands_still(Progress *last, int iteration, double energy, double residual) {
+    if ((iteration + 1) % STANDSTILL) return false;
+    const bool falls = last->energy - energy > 1e-12 * fabs(energy);
+    const bool is_still = !falls && !(residual < 0.5 * last->residual);
+    *last = (Progress){energy, residual};
+    return is_still;
+}
+
 // Iterates until no step improves any more, which is beyond the residual that is asked for: a truth's last digits
 // count.
 static int iterate(Newton *newton, double *energy, double *residual, double *gradient) {
     double shift = 0;
     int iteration = 0;
+    Progress last = {INFINITY, INFINITY};
     *energy = whole_energy(newton, newton->position, gradient);
     *residual = norm_of_free(newton->model, gradient) / newton->load;
     for (; iteration < MAX_ITERATIONS && !ck_child_interrupted; iteration++) {
@@ -269,7 +287,7 @@ static int iterate(Newton *newton, double *energy, double *residual, double *gra
         double before = *residual;
         bool moved = step && search_line(newton, step->x, energy, residual, gradient);
         cholmod_free_dense(&step, &newton->common);
-        if (!moved) break;
+        if (!moved || stands_still(&last, iteration, *energy, *residual)) break;
         if (shift == 0 && *residual<CK_EQUILIBRIUM_RESIDUAL && * residual> 0.5 * before) break; // rounding is reached
         shift = shift > 1e-9 * newton->scale ? shift / 10 : 0;
     }
