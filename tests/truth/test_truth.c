@@ -273,8 +273,8 @@ static void test_saddle(void **state) {
     fixture_free_truth(&fixture);
 }
 
-// A curtain let go level and straight stays in its plane of symmetry, where the energy has a saddle: Newton leaves it
-// once nothing moves any more, and does not try two thousand steps.
+// A curtain let go level and straight stays symmetric, where the energy has a saddle: Newton leaves it once nothing
+// moves any more, and does not try two thousand steps. Where rounding leads off it, there is the minimum.
 static void test_standstill(void **state) {
     (void)state;
     fixture_skip_sanitized();
