@@ -35,6 +35,30 @@ static void test_reference_order(void **state) {
     }
 }
 
+// Whatever keeps its steps short, swings, dampers or frames, a first path costs at most half as much again as that of
+// the fourth order, which a floor far below asks for: no scene that had a reference is too long for one.
+static void test_first_path(void **state) {
+    (void)state;
+    static const char *const springs[] = {"stiffness: 1.0e+5", "stiffness: 1.0e+5, damping: 1000", "stiffness: 1"};
+    for (size_t i = 0; i < sizeof springs / sizeof *springs; i++) {
+        double work[2];
+        for (int has_floor = 0; has_floor < 2; has_floor++) {
+            char text[500];
+            Fixture fixture;
+            snprintf(text, sizeof text,
+                     "name: first\nrope: {particles: 4, spacing: 0.1, mass: 0.04}\nsprings: {%s}\npins: [first]\n"
+                     "gravity: [0, -9.81, 0]\n%stime: {duration: 1, fps: 60}\n",
+                     springs[i], has_floor ? "colliders: [{plane: {point: [0, -100, 0], normal: [0, 1, 0]}}]\n" : "");
+            fixture_load(&fixture, text);
+            work[has_floor] = ck_reference_work(&fixture.model);
+            fixture_free(&fixture);
+        }
+        assert_true(work[0] > 0);
+        if (!(work[0] <= 1.5 * work[1]))
+            fail_msg("%s: %.3g, and %.3g by the fourth order", springs[i], work[0], work[1]);
+    }
+}
+
 // A rope thrown about is chaotic: its horizon ends before the scene does. A damped one is not.
 static void test_horizon(void **state) {
     (void)state;
@@ -177,8 +201,9 @@ static void test_strong_dampers(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reference_order), cmocka_unit_test(test_horizon),
-                                       cmocka_unit_test(test_ensemble),        cmocka_unit_test(test_child),
-                                       cmocka_unit_test(test_limits),          cmocka_unit_test(test_strong_dampers)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reference_order), cmocka_unit_test(test_first_path),
+                                       cmocka_unit_test(test_horizon),         cmocka_unit_test(test_ensemble),
+                                       cmocka_unit_test(test_child),           cmocka_unit_test(test_limits),
+                                       cmocka_unit_test(test_strong_dampers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -59,10 +59,32 @@ static void constrain(Walk *walk, double time, int side, const double *y, double
     walk->has_failed |= !ck_bars_accelerate(walk->bars, y, y + half, k + half);
 }
 
-// The method sees the kinks of these; without them forces are smooth.
+// Of a frame, of a first path by a method.
+static ck_Status substeps_by(const ck_Tableau *method, const ck_Model *model, int *substeps) {
+    const double longest = model->step / method->first_steps;
+    double frequency;
+    // bars do not stretch; waves across them are as fast as their tension makes them
+    if (model->terms & CK_TERM_RIGID) {
+        *substeps = (int)ck_stability_substeps(
+            model, fmin(longest, 0.5 * method->first_swing * ck_stability_transverse_time(model)));
+        return CK_OK;
+    }
+    ck_Status status = ck_stability_frequency(model, &frequency);
+    const double stable = fmin(method->first_swing / fmax(frequency, 1e-300),
+                               method->first_decay / fmax(ck_stability_damping_rate(model), 1e-300));
+    *substeps = (int)ck_stability_substeps(model, fmin(longest, stable));
+    return status;
+}
+
+// The eighth order where forces are smooth: the method sees the kinks of colliders, air and slack springs. Nor where
+// dampers keep steps short, which more stages would only make dearer.
 static const ck_Tableau *method_of(const ck_Model *model) {
     const bool has_kinks = model->collider_count || (model->terms & (CK_TERM_WIND | CK_TERM_PULL_ONLY));
-    return has_kinks ? &ck_tableau_fourth : &ck_tableau_eighth;
+    int few, many;
+    if (has_kinks || substeps_by(&ck_tableau_eighth, model, &few) || substeps_by(&ck_tableau_fourth, model, &many))
+        return &ck_tableau_fourth;
+    const double dearer = (double)ck_tableau_eighth.stages * few / (ck_tableau_fourth.stages * many);
+    return dearer > 1.5 ? &ck_tableau_fourth : &ck_tableau_eighth;
 }
 
 // y + dt·Σ shares_m·k_m, of so many, into sum: y itself, or the stage. The sum comes first, as y has the larger digits.
@@ -213,19 +235,7 @@ static void end_walk(Walk *walk) {
 }
 
 static ck_Status first_substeps(const ck_Model *model, int *substeps) {
-    double frequency;
-    // bars do not stretch; waves across them are as fast as their tension makes them
-    if (model->terms & CK_TERM_RIGID) {
-        *substeps = (int)ck_stability_substeps(
-            model, fmin(model->step / 4, 0.5 * method_of(model)->first_swing * ck_stability_transverse_time(model)));
-        return CK_OK;
-    }
-    ck_Status status = ck_stability_frequency(model, &frequency);
-    const ck_Tableau *method = method_of(model);
-    const double longest = fmin(method->first_swing / fmax(frequency, 1e-300),
-                                method->first_decay / fmax(ck_stability_damping_rate(model), 1e-300));
-    *substeps = (int)ck_stability_substeps(model, fmin(model->step / 4, longest));
-    return status;
+    return substeps_by(method_of(model), model, substeps);
 }
 
 static ck_Status start_walk(Walk *walk, const ck_Model *model, const ck_Tableau *method, int substeps,
@@ -411,12 +421,21 @@ ck_Status ck_reference_path_create(ck_ReferencePath *path, const ck_Model *model
     ck_Status status = first_substeps(model, &path->substeps);
     if (!status) status = check_model(model, path, error);
     ck_Model part = *model;
+    int calm = 0, begun = 0; // frames of the last part that was, and the substeps that it leaves to begin with
     if (model->collider_count && model->frame_count > 10 * FIRST_PART) part.frame_count /= FIRST_PART;
     while (!status) {
         status = refine(path, &part, error);
-        if (status || part.frame_count == model->frame_count || path->horizon < part.frame_count) break;
-        part.frame_count = model->frame_count;
-        path->substeps /= 2;
+        if (status == CK_REFUSED && calm && part.frame_count > 2 * calm) {
+            // the whole takes more steps than there may be: its horizon may be within a part
+            status = CK_OK;
+            part.frame_count = 2 * calm;
+        } else {
+            if (status || part.frame_count == model->frame_count || path->horizon < part.frame_count) break;
+            calm = part.frame_count;
+            begun = path->substeps / 2;
+            part.frame_count = model->frame_count;
+        }
+        path->substeps = begun;
         ck_reference_path_free(path);
     }
     if (!status && part.frame_count < model->frame_count)

@@ -6,9 +6,9 @@
 #include "status.h"
 #include "trajectory.h"
 
-// The path from the model's start by a Runge–Kutta method, substeps to a frame: of the eighth order; in contact and
-// where forces have kinks, which no order survives, of the fourth. Rigid bars are constraints on accelerations, and put
-// right after each step; a step ends where a moved pin's speed jumps.
+// The path from the model's start by a Runge–Kutta method, substeps to a frame: of the eighth order; in contact, where
+// forces have kinks, which no order survives, and where dampers keep steps short, of the fourth. Rigid bars are
+// constraints on accelerations, and put right after each step; a step ends where a moved pin's speed jumps.
 //   nudge  m, added to the start of every free coordinate with a sign of its own, by seed; 0: none
 // Writes all frames; stops early, with fewer frames, where numbers leave the finite.
 // Errors: CK_NO_MEMORY. Free trajectory in any case. See tableau.h.

@@ -8,6 +8,7 @@ const ck_Tableau ck_tableau_fourth = {
     .matrix = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}},
     .first_swing = 0.7,
     .first_decay = 2.5,
+    .first_steps = 4,
 };
 
 #define S 4.58257569495584000659 // √21
@@ -33,4 +34,5 @@ const ck_Tableau ck_tableau_eighth = {
                 (28 - 28 * S) / 45, (49 - 7 * S) / 18}},
     .first_swing = 1.9,
     .first_decay = 3.2,
+    .first_steps = 2,
 };

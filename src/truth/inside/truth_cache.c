@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 // Changes whenever a truth of the same model would come out different, or the layout does.
-#define FORMAT "clothcheck truth 4\n\0\0\0\0"
+#define FORMAT "clothcheck truth 5\n\0\0\0\0"
 
 typedef struct Header {
     char format[24];
