@@ -3,6 +3,7 @@
 #include "constraint_kind.h"
 #include "row_contact.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 bool ck_projection_fits(const ck_Model *model, ck_RowSprings *springs) {
@@ -16,6 +17,7 @@ static const ck_ProjectionHead *head_of(const ck_ProjectedCloth *cloth) {
 void ck_projection_destroy(ck_ProjectedCloth *cloth) {
     if (!cloth) return;
     ck_row_contact_destroy(head_of(cloth)->contact);
+    free(head_of(cloth)->seen);
     head_of(cloth)->kind->destroy(cloth);
 }
 
@@ -24,7 +26,7 @@ ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSet
                                                          {&ck_projection_lines, &ck_projection_lines_single}};
     const ck_ProjectionKind *kind = kinds[setup->rule->projection == CK_PROJECT_LINES][setup->loops->is_single];
     ck_Status status = kind->create(cloth, setup, error);
-    if (status || !setup->beside || !kind->touch) return status;
+    if (status || !setup->beside) return status;
     status = kind->touch(*cloth, setup, error);
     if (!status) return CK_OK;
     ck_projection_destroy(*cloth);

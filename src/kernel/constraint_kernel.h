@@ -70,9 +70,9 @@ typedef struct ck_ProjectionSetup {
 
 // In the precision of the loops: in single precision, places are told from an origin that moves with the cloth, and
 // what a substep moves them by from where it starts, so that short steps cost no digits. Surfaces are copied. Memory:
-// 10 numbers a particle, 3 more in single precision, 8 doubles more where there are surfaces (20 for lines), four more
-// for lines, and one a spring for XPBD and lines with several sweeps. Errors: CK_NO_MEMORY. Free with
-// ck_projection_destroy.
+// 10 numbers a particle, 3 more in single precision, 8 doubles more where there are surfaces (20 for lines and in
+// single precision, and there 3 numbers more for rows), four more for lines, and one a spring for XPBD and lines with
+// several sweeps. Errors: CK_NO_MEMORY. Free with ck_projection_destroy.
 ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
 void ck_projection_destroy(ck_ProjectedCloth *cloth);
 

@@ -21,7 +21,7 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
     const double rate = rate_of(cloth);
     static const double none[3];
     ck_rows_store(&cloth->rows, position, cloth->x, none);
-    ck_rows_store(&cloth->rows, velocity, CK_IS_SINGLE ? cloth->kept : cloth->from, none);
+    ck_rows_store(&cloth->rows, velocity, cloth->from, none);
     ck_rows_store(&cloth->rows, before, cloth->before, none);
     for (int i = 0; i < 3 * cloth->rows.rows * cloth->rows.columns; i += 3)
         for (int axis = 0; axis < 3; axis++) {
@@ -34,6 +34,7 @@ static void read_state(const ck_ProjectedCloth *cloth, double *position, double 
 
 static void destroy(ck_ProjectedCloth *cloth) {
     free(cloth->state);
+    free(cloth->met_from);
     free(cloth->springs);
     free(cloth->multipliers);
     free(cloth->is_held);
@@ -91,8 +92,8 @@ static void place_arrays(ck_ProjectedCloth *cloth) {
     cloth->start = cloth->state + 3 * size;
     cloth->before = cloth->state + 6 * size;
     cloth->is_free = cloth->state + 9 * size;
-    cloth->from = cloth->start;
     cloth->kept = CK_IS_SINGLE ? cloth->state + 10 * size : NULL;
+    cloth->from = CK_IS_SINGLE ? cloth->kept : cloth->start;
     for (int direction = 0; direction < CK_DIRECTIONS; direction++)
         cloth->stripes[direction] = (ck_Stripe *)cloth->springs + direction * cloth->rows.span;
     // the colours along a row have the row's vectors between them
@@ -160,7 +161,40 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
 }
 
 #ifdef CK_SINGLE
-const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run, read_state, NULL};
+// Of a place beside the cloth, in the order of its vectors.
+static int particle_at(const ck_ProjectedCloth *cloth, int place) {
+    const int stride = (int)cloth->rows.stride, lane = place % CK_STRIPE, vector = place % stride / CK_STRIPE;
+    return place / stride * cloth->rows.columns + lane * cloth->rows.span + vector;
+}
+
+static bool meet(void *state, int place, const double *field, double *x, double *v, double *impulse) {
+    const ck_ProjectedCloth *cloth = state;
+    const ck_Follower *follower = &cloth->head.follower;
+    return follower->meet(follower->state, particle_at(cloth, place), field, x, v, impulse);
+}
+
+static void press(void *state, int place, const double *from, double *depth, double *held, double *x, double *impulse) {
+    const ck_ProjectedCloth *cloth = state;
+    const ck_Follower *follower = &cloth->head.follower;
+    follower->press(follower->state, particle_at(cloth, place), from, depth, held, x, impulse);
+}
+
+// What moves starts as without contact.
+static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
+    const ck_Rows *rows = &cloth->rows;
+    const ck_Follower follower = {cloth, meet, press};
+    cloth->head.follower = setup->beside->follower;
+    ck_Status status = ck_sixteens_create(&cloth->head, setup->beside, &follower, rows->rows * rows->stride, error);
+    if (status) return status;
+    for (int i = 0; i < rows->rows * rows->columns; i++)
+        cloth->head.contact->mass[ck_rows_at(rows, i / rows->columns, i % rows->columns).single] =
+            setup->beside->mass[i];
+    cloth->met_from = ck_rows_allocate(rows, 3);
+    if (!cloth->met_from) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    memcpy(cloth->met_from, cloth->kept, 3 * sizeof *cloth->kept * rows->size);
+    cloth->from = cloth->met_from;
+    return CK_OK;
+}
 #else
 // What moves starts as without contact.
 static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
@@ -171,6 +205,6 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
     cloth->from = cloth->head.contact->from;
     return CK_OK;
 }
+#endif
 
 const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run, read_state, touch};
-#endif

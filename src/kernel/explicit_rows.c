@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double none[3];
+
 // Pass 0 is the start of the first substep, each other one ends a substep and starts the next. The first row has no
 // springs from above; nor has the second, of those that bend.
 static void run_row(void *state, long pass, int row) {
@@ -38,7 +40,28 @@ static void kick(ck_Explicit *body) {
     for (int row = 0; row < cloth->rows.rows; row++) run_row(cloth, 1, row);
 }
 
-#ifndef CK_SINGLE
+// A place or a speed of what is near, in double precision: what its digits leave of it in single precision is kept, or
+// what slides would be pushed into what it touches, and leave it.
+static void take_all(const ck_Real *tiles, const ck_Real *left, long place, const double origin[3], double *to,
+                     long stride) {
+    if (!CK_IS_SINGLE) ck_tile_take(to, stride, tiles + place);
+    for (int axis = 0; axis < 3 && CK_IS_SINGLE; axis++) {
+        const long at = place + axis * CK_STRIPE;
+        to[axis * stride] = tiles[at] + (origin[axis] + left[at]);
+    }
+}
+
+static void put_all(ck_Real *tiles, ck_Real *left, long place, const double origin[3], const double *from,
+                    long stride) {
+    if (!CK_IS_SINGLE) ck_tile_put(tiles + place, from, stride);
+    for (int axis = 0; axis < 3 && CK_IS_SINGLE; axis++) {
+        const long at = place + axis * CK_STRIPE;
+        const double all = from[axis * stride] - origin[axis];
+        tiles[at] = (ck_Real)all;
+        left[at] = (ck_Real)(all - tiles[at]);
+    }
+}
+
 // Those of a row that are marked near, and free; returns how many there are by then.
 static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, const ck_Loose *all) {
     const ck_ExplicitCloth cloth = *shared;
@@ -50,12 +73,23 @@ static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, cons
             const int lane = __builtin_ctz(bits), column = lane * cloth.rows.span + i;
             const long place = first.tile + 3 * CK_STRIPE * i + lane;
             if (column >= cloth.rows.columns || !(cloth.gain[first.single + CK_STRIPE * i + lane] > 0)) continue;
-            ck_tile_take(loose.x + found, loose.stride, cloth.x + place);
-            ck_tile_take(loose.v + found, loose.stride, cloth.v + place);
+            take_all(cloth.x, cloth.x_left, place, cloth.origin, loose.x + found, loose.stride);
+            take_all(cloth.v, cloth.v_left, place, none, loose.v + found, loose.stride);
             ck_tile_take(loose.a + found, loose.stride, cloth.a + place);
             near[found++] = (ck_Near){row * cloth.rows.columns + column, place};
         }
     return found;
+}
+
+static void see(ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int count) {
+#ifdef CK_SINGLE
+    follow(cloth);
+    for (int i = 0; i < count; i++) cloth->seen[i] = ck_lane_surface(&surfaces[i], cloth->origin, cloth->size);
+    cloth->surfaces = cloth->seen;
+#else
+    (void)count;
+    cloth->surfaces = surfaces;
+#endif
 }
 
 // Row by row, so that what one step has read the next finds in the cache.
@@ -64,10 +98,12 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
     const size_t span = (size_t)cloth->rows.span;
     bool are_kept = true;
     loose->count = 0;
+    see(cloth, surfaces, count);
     for (int row = 0; row < cloth->rows.rows; row++) {
         ck_NearPart *part = &cloth->parts[row];
-        cloth->loops->near_row(cloth, row, surfaces, count, cloth->near);
-        if (!ck_near_is_kept(part, loose->count, cloth->near, cloth->near_before + span * (size_t)row, span)) {
+        cloth->loops->near_row(cloth, row, count);
+        if (!ck_near_is_kept(part, loose->count, cloth->near, cloth->near_before + span * (size_t)row,
+                             span * sizeof *cloth->near)) {
             *part = (ck_NearPart){loose->count, take_row(cloth, row, near, loose) - loose->count};
             are_kept = false;
         }
@@ -78,7 +114,7 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
 }
 
 static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all) {
-    const double *a = ((const ck_ExplicitCloth *)body)->a;
+    const ck_Real *a = ((const ck_ExplicitCloth *)body)->a;
     const ck_Loose loose = *all;
     for (int i = 0; i < loose.count; i++) ck_tile_take(loose.a + i, loose.stride, a + near[i].place);
 }
@@ -89,14 +125,15 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *al
     for (int i = 0; i < loose.count; i++) {
         const long place = near[i].place;
         if (is_kicked) {
-            ck_tile_put(cloth.v + place, loose.v + i, loose.stride);
+            put_all(cloth.v, cloth.v_left, place, none, loose.v + i, loose.stride);
             continue;
         }
-        ck_tile_put(cloth.x + place, loose.x + i, loose.stride);
+        put_all(cloth.x, cloth.x_left, place, cloth.origin, loose.x + i, loose.stride);
         ck_tile_put(cloth.predicted + place, loose.predicted + i, loose.stride);
     }
 }
 
+#ifndef CK_SINGLE
 static const double *acceleration(const ck_Explicit *body, size_t *count) {
     const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
     *count = 3 * (size_t)(cloth->rows.rows * cloth->rows.stride);
@@ -106,7 +143,6 @@ static const double *acceleration(const ck_Explicit *body, size_t *count) {
 
 static void read_state(const ck_Explicit *body, double *position, double *velocity) {
     const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
-    static const double none[3];
     ck_rows_store(&cloth->rows, position, cloth->x, cloth->origin);
     ck_rows_store(&cloth->rows, velocity, cloth->v, none);
 }
@@ -118,6 +154,8 @@ static void destroy(ck_Explicit *body) {
     free(cloth->near);
     free(cloth->near_before);
     free(cloth->parts);
+    free(cloth->seen);
+    free(cloth->left);
     free(cloth);
 }
 
@@ -137,10 +175,18 @@ static void pace(ck_Explicit *body, const ck_ExplicitSetup *setup) {
             (ck_Real)(setup->dt * setup->inverse_mass[i]);
 }
 
+static void tell_left(const ck_ExplicitCloth *cloth, const ck_ExplicitSetup *setup) {
+    const int columns = cloth->rows.columns;
+    for (int i = 0; i < cloth->rows.rows * columns; i++) {
+        const long place = ck_rows_at(&cloth->rows, i / columns, i % columns).tile;
+        put_all(cloth->x, cloth->x_left, place, cloth->origin, setup->position + 3 * i, 1);
+        put_all(cloth->v, cloth->v_left, place, none, setup->velocity + 3 * i, 1);
+    }
+}
+
 // Where it is, and the acceleration there: what a pass gives that goes nowhere.
 static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    static const double none[3];
     if (CK_IS_SINGLE) memcpy(cloth->origin, setup->position, sizeof cloth->origin);
     for (int row = 0; row < cloth->rows.rows; row++) cloth->parts[row].first = -1;
     ck_rows_load(&cloth->rows, cloth->x, setup->position, cloth->origin);
@@ -148,6 +194,38 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     pace(body, setup);
     kick(body);
     ck_rows_load(&cloth->rows, cloth->v, setup->velocity, none);
+    if (cloth->left) tell_left(cloth, setup);
+}
+
+static bool allocate(ck_ExplicitCloth *cloth, int colliders) {
+    const ck_Rows row = {.size = (size_t)cloth->rows.stride};
+    const size_t span = (size_t)cloth->rows.span, rows = (size_t)cloth->rows.rows;
+    cloth->state = ck_rows_allocate(&cloth->rows, 13);
+    cloth->pairs = ck_rows_allocate(&row, 2);
+    cloth->near = malloc(sizeof *cloth->near * span);
+    cloth->near_before = malloc(sizeof *cloth->near_before * span * rows);
+    cloth->parts = malloc(sizeof *cloth->parts * rows);
+    if (CK_IS_SINGLE && colliders) {
+        cloth->seen = calloc((size_t)colliders, sizeof *cloth->seen);
+        cloth->left = ck_rows_allocate(&cloth->rows, 6);
+        if (!cloth->seen || !cloth->left) return false;
+        cloth->x_left = cloth->left;
+        cloth->v_left = cloth->left + 3 * cloth->rows.size;
+    }
+    return cloth->state && cloth->pairs && cloth->near && cloth->near_before && cloth->parts;
+}
+
+static void place_arrays(ck_ExplicitCloth *cloth) {
+    const size_t size = cloth->rows.size;
+    cloth->x = cloth->state;
+    cloth->v = cloth->state + 3 * size;
+    cloth->predicted = cloth->state + 6 * size;
+    cloth->a = cloth->state + 9 * size;
+    cloth->gain = cloth->state + 12 * size;
+    cloth->paired = cloth->pairs;
+    cloth->far_paired = cloth->pairs + cloth->rows.stride;
+    ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
+    ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
 }
 
 static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Error *error) {
@@ -161,26 +239,11 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     cloth->terms = terms_of(model, &cloth->springs);
     for (int kind = 0; kind < CK_SPRING_KINDS; kind++)
         cloth->slack[kind] = (ck_Real)(cloth->springs.stiffness[kind] * cloth->springs.rest[kind]);
-    const ck_Rows row = {.size = (size_t)cloth->rows.stride};
-    cloth->state = ck_rows_allocate(&cloth->rows, 13);
-    cloth->pairs = ck_rows_allocate(&row, 2);
-    cloth->near = malloc((size_t)cloth->rows.span);
-    cloth->near_before = malloc((size_t)cloth->rows.span * (size_t)cloth->rows.rows);
-    cloth->parts = malloc(sizeof *cloth->parts * (size_t)cloth->rows.rows);
-    if (!cloth->state || !cloth->pairs || !cloth->near || !cloth->near_before || !cloth->parts) {
+    if (!allocate(cloth, model->collider_count)) {
         destroy(&cloth->base);
         return ck_fail(error, CK_NO_MEMORY, "out of memory");
     }
-    const size_t size = cloth->rows.size;
-    cloth->x = cloth->state;
-    cloth->v = cloth->state + 3 * size;
-    cloth->predicted = cloth->state + 6 * size;
-    cloth->a = cloth->state + 9 * size;
-    cloth->gain = cloth->state + 12 * size;
-    cloth->paired = cloth->pairs;
-    cloth->far_paired = cloth->pairs + row.size;
-    ck_rows_mark_paired(&cloth->rows, 1, cloth->paired);
-    ck_rows_mark_paired(&cloth->rows, 2, cloth->far_paired);
+    place_arrays(cloth);
     ck_model_field(model, 0, field);
     for (int axis = 0; axis < 3; axis++) cloth->weight[axis] = (ck_Real)(model->mass[0] * field[axis]);
     cloth->size = model->size;
@@ -195,12 +258,12 @@ const ck_ExplicitKind ck_explicit_rows = {
     .pace = pace,
     .destroy = destroy,
     .step = step,
+    .drift = drift,
     .kick = kick,
+    .take = take,
+    .put = put,
     .read = read_state,
 #ifndef CK_SINGLE
     .acceleration = acceleration,
-    .drift = drift,
-    .take = take,
-    .put = put,
 #endif
 };

@@ -44,6 +44,9 @@ static void follow(struct ck_LinedCloth *lined) {
 static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     struct ck_LinedCloth *lined = of(cloth);
     (void)waves; // one thread alone
+#ifdef CK_SINGLE
+    ck_sixteens_see(&lined->head, lined->origin, lined->size);
+#endif
     for (uint32_t i = 0; i < substeps; i++) {
         lined->loops->line_substep(lined, i + 1 == substeps);
         if (lined->is_fresh) end_start(lined);
@@ -51,14 +54,14 @@ static void step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     if (CK_IS_SINGLE) follow(lined);
 }
 
-// A particle's number among places in rows of eight.
-static int eights_place(const struct ck_LinedCloth *lined, int particle) {
+// A particle's number among places beside the cloth.
+static int place_beside(const struct ck_LinedCloth *lined, int particle) {
     return (int)(particle / lined->columns * ck_line_places(lined)) + particle % lined->columns;
 }
 
 // m: where contact measures a particle's way from.
 static double *from_at(const struct ck_LinedCloth *lined, int particle, int axis) {
-    return lined->head.contact->from + ck_tile_of(eights_place(lined, particle)) + axis * CK_STRIPE;
+    return lined->head.contact->from + ck_eight_tile(place_beside(lined, particle)) + axis * CK_EIGHT;
 }
 
 static void read_state(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before) {
@@ -194,9 +197,6 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     return CK_OK;
 }
 
-#ifdef CK_SINGLE
-const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, NULL};
-#else
 static int particle_at(const struct ck_LinedCloth *lined, int place) {
     const int places = (int)ck_line_places(lined);
     return place / places * lined->columns + place % places;
@@ -204,12 +204,14 @@ static int particle_at(const struct ck_LinedCloth *lined, int place) {
 
 static bool meet(void *state, int place, const double *field, double *x, double *v, double *impulse) {
     const struct ck_LinedCloth *lined = state;
-    return lined->follower.meet(lined->follower.state, particle_at(lined, place), field, x, v, impulse);
+    const ck_Follower *follower = &lined->head.follower;
+    return follower->meet(follower->state, particle_at(lined, place), field, x, v, impulse);
 }
 
 static void press(void *state, int place, const double *from, double *depth, double *held, double *x, double *impulse) {
     const struct ck_LinedCloth *lined = state;
-    lined->follower.press(lined->follower.state, particle_at(lined, place), from, depth, held, x, impulse);
+    const ck_Follower *follower = &lined->head.follower;
+    follower->press(follower->state, particle_at(lined, place), from, depth, held, x, impulse);
 }
 
 // What moves starts as without contact.
@@ -217,16 +219,20 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
     struct ck_LinedCloth *lined = of(cloth);
     const ck_RowContact *beside = setup->beside;
     const ck_Follower follower = {lined, meet, press};
-    lined->follower = beside->follower;
-    const ck_Status status = ck_row_contact_create(&lined->head.contact, &beside->touched, &follower,
-                                                   lined->rows * (int)ck_line_places(lined), error);
+    const long places = lined->rows * ck_line_places(lined);
+    lined->head.follower = beside->follower;
+#ifdef CK_SINGLE
+    const ck_Status status = ck_sixteens_create(&lined->head, beside, &follower, places, error);
+#else
+    const ck_Status status =
+        ck_row_contact_create(&lined->head.contact, beside->loops, &beside->touched, &follower, (int)places, error);
+#endif
     for (int i = 0; i < lined->rows * lined->columns && !status; i++) {
-        lined->head.contact->mass[eights_place(lined, i)] = beside->mass[i];
-        for (int axis = 0; axis < 3; axis++)
+        lined->head.contact->mass[place_beside(lined, i)] = beside->mass[i];
+        for (int axis = 0; axis < 3 && !CK_IS_SINGLE; axis++)
             *from_at(lined, i, axis) = lined->start[place_of(lined, i) + axis * lined->plane];
     }
     return status;
 }
 
 const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, touch};
-#endif

@@ -72,9 +72,8 @@ typedef struct ck_Follower {
                   double *impulse);
 } ck_Follower;
 
-// Which particles of a row may come to touch one within a substep; see near_loop.c.
-typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, const ck_NearSurface *surfaces, int count,
-                        uint8_t *near);
+// Which particles of a row may come to touch one of so many surfaces within a substep; see near_loop.c.
+typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, int count);
 // The same over a chunk of a list of springs, from one of its two arrays of points, into the other where it advances;
 // see list_loop.h.
 typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk, int now);
@@ -83,9 +82,11 @@ typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const c
                           uint8_t *near);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const struct ck_Visits *visits);
-// A row's flight to the start of a substep's sweeps, and what surfaces push it by in a sweep; see row_contact_loop.c.
+// A row's flight to the start of a substep's sweeps, and what surfaces push it by in a sweep, of a contact and of a
+// cloth; see row_contact_loop.c.
 typedef void ck_RowFly(const struct ck_ProjectedCloth *cloth, int row, bool is_last);
 typedef bool ck_RowPress(const struct ck_RowContact *contact, int row); // true where anything was
+typedef void ck_ClothPress(const struct ck_ProjectedCloth *cloth, int row);
 // Beside a list, and of lines: a bit for each of a row of eight that may meet a surface on its way, from x at a speed
 // way/dt under a field gain/dt²; the others do not.
 typedef unsigned ck_RowMeets(const struct ck_RowContact *contact, int row);
@@ -114,6 +115,7 @@ typedef struct ck_Loops {
     ck_ProjectionVisits *projection_visits;
     ck_RowFly *row_fly;
     ck_RowPress *row_press;
+    ck_ClothPress *cloth_press;
     ck_RowMeets *row_meets;
     ck_LineSubstep *line_substep;
     ck_LineFly *line_fly;

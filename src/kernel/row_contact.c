@@ -27,12 +27,13 @@ static bool allocate(ck_RowContact *contact, bool is_beside) {
     return true;
 }
 
-static ck_Status create(ck_RowContact **out, const ck_Rows *rows, const ck_Touched *touched, bool is_beside,
-                        ck_Error *error) {
+static ck_Status create(ck_RowContact **out, const ck_Loops *loops, const ck_Rows *rows, const ck_Touched *touched,
+                        bool is_beside, ck_Error *error) {
     const size_t surfaces = sizeof *touched->surfaces * (size_t)touched->count;
     *out = NULL;
     ck_RowContact *contact = calloc(1, sizeof *contact + 2 * surfaces);
     if (!contact) return ck_fail(error, CK_NO_MEMORY, "out of memory");
+    contact->loops = loops;
     contact->rows = *rows;
     contact->touched = *touched;
     contact->touched.surfaces = ck_row_contact_surfaces(contact, false);
@@ -47,17 +48,17 @@ static ck_Status create(ck_RowContact **out, const ck_Rows *rows, const ck_Touch
     return CK_OK;
 }
 
-ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Touched *touched, const ck_Follower *follower,
-                                int particles, ck_Error *error) {
+ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Loops *loops, const ck_Touched *touched,
+                                const ck_Follower *follower, int particles, ck_Error *error) {
     const ck_Rows rows = rows_of_eight(particles);
-    ck_Status status = create(contact, &rows, touched, true, error);
+    ck_Status status = create(contact, loops, &rows, touched, true, error);
     if (!status) (*contact)->follower = *follower;
     return status;
 }
 
 ck_Status ck_row_contact_of_rows(ck_RowContact **contact, const ck_RowContact *beside, const ck_Rows *rows,
                                  ck_Error *error) {
-    ck_Status status = create(contact, rows, &beside->touched, false, error);
+    ck_Status status = create(contact, beside->loops, rows, &beside->touched, false, error);
     if (status) return status;
     (*contact)->follower = beside->follower;
     for (int i = 0; i < rows->rows * rows->columns; i++)

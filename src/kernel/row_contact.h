@@ -11,7 +11,16 @@
 #include "rows.h"
 #include "status.h"
 
+// Places of a row of those beside something, in either precision.
+#define CK_EIGHT 8
+
+// As ck_tile_of, of eights.
+CK_INLINE long ck_eight_tile(long place) {
+    return place / CK_EIGHT * 3 * CK_EIGHT + place % CK_EIGHT;
+}
+
 typedef struct ck_RowContact {
+    const ck_Loops *loops; // of doubles
     ck_Rows rows;
     ck_Touched touched;         // where surfaces are at the start of a substep
     const ck_NearSurface *ends; // and at its end
@@ -29,8 +38,8 @@ typedef struct ck_RowContact {
 
 // Beside a list or lines of so many particles, in its order; mass, [n], is then set by the caller. Surfaces are copied.
 // Errors: CK_NO_MEMORY. Free with ck_row_contact_destroy.
-ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Touched *touched, const ck_Follower *follower,
-                                int particles, ck_Error *error);
+ck_Status ck_row_contact_create(ck_RowContact **contact, const ck_Loops *loops, const ck_Touched *touched,
+                                const ck_Follower *follower, int particles, ck_Error *error);
 // The same of a projected cloth, with the masses there; its places are then set by the caller.
 ck_Status ck_row_contact_of_rows(ck_RowContact **contact, const ck_RowContact *beside, const ck_Rows *rows,
                                  ck_Error *error);

@@ -227,6 +227,9 @@ static void follow(ck_ProjectedCloth *cloth) {
 
 void ck_projection_run(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     cloth->sweeps = (long)substeps * cloth->rule.iterations;
+#ifdef CK_SINGLE
+    ck_sixteens_see(&cloth->head, cloth->origin, cloth->size);
+#endif
     if (cloth->rule.iterations == 1 || cloth->rule.projection == CK_PROJECT_SPRINGS)
         step_down(cloth, waves);
     else

@@ -78,15 +78,19 @@ void ck_native_destroy(void *state) {
     free(native);
 }
 
+const ck_Loops *ck_native_doubles(const ck_Native *native) {
+    return ck_loops_for((uint32_t)ck_settings_own(&native->used, CK_NATIVE_VECTORS, 0));
+}
+
 const ck_Loops *ck_native_loops(const ck_Native *native) {
-    const ck_Loops *loops = ck_loops_for((uint32_t)ck_settings_own(&native->used, CK_NATIVE_VECTORS, 0));
+    const ck_Loops *loops = ck_native_doubles(native);
     return ck_settings_own(&native->used, CK_NATIVE_SINGLE, 0) > 0 ? ck_loops_single(loops) : loops;
 }
 
-ck_Status ck_native_check_precision(const ck_Model *model, const ck_Settings *used, bool is_in_rows, ck_Error *error) {
-    if (!(ck_settings_own(used, CK_NATIVE_SINGLE, 0) > 0) || (is_in_rows && !model->collider_count)) return CK_OK;
+ck_Status ck_native_check_precision(const ck_Settings *used, bool is_in_rows, ck_Error *error) {
+    if (!(ck_settings_own(used, CK_NATIVE_SINGLE, 0) > 0) || is_in_rows) return CK_OK;
     return ck_fail(error, CK_REFUSED,
-                   "single precision is for regular cloths that touch nothing: native-verlet's may bend by springs");
+                   "single precision is for regular cloths: native-verlet's may bend by springs and touch what moves");
 }
 
 void ck_native_read(const void *state, double *position, double *velocity) {

@@ -54,7 +54,7 @@ typedef struct ck_Native {
     {                                                                                                                  \
         .name = "single", .slot = CK_OWN + CK_NATIVE_SINGLE, .is_whole = true, .least = 0, .most = 1, .unit = "1",     \
         .rule = "0: double precision",                                                                                 \
-        .help = "1: single precision from an origin that moves with the cloth, on regular cloths that touch nothing",  \
+        .help = "1: single precision from an origin that moves with the cloth, on regular cloths",                     \
         .leaves_theory = true                                                                                          \
     }
 
@@ -73,11 +73,13 @@ void ck_native_read(const void *state, double *position, double *velocity);
 // Forgets the contact force of the frame before.
 void ck_native_start_frame(ck_Native *native);
 
-// The loops over rows of the vectors that are set, or of the widest, in the precision that is set.
+// The loops over rows of the vectors that are set, or of the widest, in the precision that is set; and those of
+// doubles, in which contact is in either.
 const struct ck_Loops *ck_native_loops(const ck_Native *native);
+const struct ck_Loops *ck_native_doubles(const ck_Native *native);
 
 // Refuses single precision where a model is not all in rows.
-ck_Status ck_native_check_precision(const ck_Model *model, const ck_Settings *used, bool is_in_rows, ck_Error *error);
+ck_Status ck_native_check_precision(const ck_Settings *used, bool is_in_rows, ck_Error *error);
 
 // Notes the positions at the start of a substep.
 void ck_native_start_substep(ck_Native *native);

@@ -60,7 +60,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     translate(model, wanted, used, ledger);
     ck_Native *native;
     ck_RowSprings springs;
-    ck_Status status = ck_native_check_precision(model, used, ck_projection_fits(model, &springs), error);
+    ck_Status status = ck_native_check_precision(used, ck_projection_fits(model, &springs), error);
     if (!status) status = ck_leapfrog_create(&native, model, used, error);
     if (status) return status;
     return ck_native_hand_out(state, native, ck_leapfrog_lay_out(native, CK_PROJECT_BARS, error));

@@ -66,7 +66,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
                         ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
     ck_Native *native;
-    ck_Status status = ck_native_check_precision(model, wanted, ck_projection_fits(model, &springs), error);
+    ck_Status status = ck_native_check_precision(wanted, ck_projection_fits(model, &springs), error);
     if (status) return status;
     if (!ck_projection_fits(model, &springs))
         return ck_fail(error, CK_REFUSED,

@@ -191,7 +191,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     ck_RowSprings springs;
     ck_Status status = translate(model, wanted, used, ledger);
     if (status) return ck_fail(error, status, "out of memory");
-    status = ck_native_check_precision(model, used, ck_rows_fit(model, &springs), error);
+    status = ck_native_check_precision(used, ck_rows_fit(model, &springs), error);
     if (status) return status;
     if (ck_settings_own(used, CK_NATIVE_SINGLE, 0) > 0 && ck_settings_own(used, CK_NATIVE_TOLERANCE, 0) > 0)
         return ck_fail(error, CK_REFUSED, "steps adapt in double precision only: set 'tolerance' or 'single'");

@@ -192,7 +192,7 @@ static ck_Status create(void **state, const ck_Model *model, const ck_Settings *
     ck_RowSprings row_springs;
     translate(model, wanted, used, ledger);
     ck_Native *native;
-    ck_Status status = ck_native_check_precision(model, used, ck_projection_fits(model, &row_springs), error);
+    ck_Status status = ck_native_check_precision(used, ck_projection_fits(model, &row_springs), error);
     if (!status) status = ck_native_create(&native, model, used, error);
     if (status) return status;
     size_t springs = (size_t)model->spring_count;

@@ -19,8 +19,8 @@ static ck_Status create_beside(ck_Native *native, ck_Error *error) {
     ck_near_surfaces(surfaces, native->contact);
     const ck_Touched touched = {surfaces, count, native->dt, native->contact->slack};
     const ck_Follower follower = ck_native_follower(native);
-    const ck_Status status =
-        ck_row_contact_create(&native->beside, &touched, &follower, ck_model_cloth_count(native->model), error);
+    const ck_Status status = ck_row_contact_create(&native->beside, ck_native_doubles(native), &touched, &follower,
+                                                   ck_model_cloth_count(native->model), error);
     free(surfaces);
     return status;
 }

@@ -105,7 +105,7 @@ static void weigh(const ck_VerletContact *contact, const ck_Model *model) {
 void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Explicit *body) {
     ck_Contact *contact = native->contact;
     const ck_Model *model = native->model;
-    const ck_Loops *loops = ck_native_loops(native);
+    const ck_Loops *loops = ck_native_doubles(native);
     ck_Loose *loose = &own->loose;
     if (contact->motion) ck_contact_follow(contact, ck_native_time(native));
     if (contact->motion || !native->done) ck_near_surfaces(own->surfaces, contact);

@@ -80,7 +80,7 @@ static void gather_crowd(Crowd *crowd, const char *colliders, uint64_t seed) {
     ck_near_surfaces(surfaces, crowd->contact);
     const ck_Touched touched = {surfaces, crowd->fixture.model.collider_count, DT, crowd->contact->slack};
     const ck_Follower follower = {.state = crowd, .press = press_alone};
-    assert_int_equal(ck_row_contact_create(&crowd->rows, &touched, &follower, PARTICLES, NULL), CK_OK);
+    assert_int_equal(ck_row_contact_create(&crowd->rows, ck_loops_at(0), &touched, &follower, PARTICLES, NULL), CK_OK);
     memcpy(crowd->rows->mass, crowd->mass, sizeof crowd->mass);
     ck_near_surfaces_at_end(ck_row_contact_surfaces(crowd->rows, true), crowd->contact);
     scatter(crowd->rows->x, crowd->x);

@@ -293,7 +293,7 @@ static __attribute__((noinline)) void fly_row(const ck_ProjectedCloth *cloth, in
 static __attribute__((noinline)) void press_rows(const ck_ProjectedCloth *cloth, const ck_Visits *visits) {
     for (int i = 0; i < visits->count; i++)
         for (int k = 0; k < 2; k++)
-            if (visits->ends[i][k] >= 0) cloth->loops->row_press(cloth->head.contact, visits->ends[i][k]);
+            if (visits->ends[i][k] >= 0) cloth->loops->cloth_press(cloth, visits->ends[i][k]);
 }
 
 CK_INLINE void predict_row(const ck_ProjectedCloth *cloth, int row, bool is_last) {

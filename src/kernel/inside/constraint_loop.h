@@ -50,14 +50,14 @@ struct ck_ProjectedCloth {
     int depth;              // of those down, so many run interleaved
     double size, origin[3]; // m, of the cloth; and, of both; 0 but in single precision
     ck_Real *x, *start;     // tiles, m; start: before the last substep; in single precision x is told from there
-    ck_Real *from;          // m: where a way is measured from: start, but for impacts
+    ck_Real *from;          // m: where a way is measured from: start, but for impacts; told as x is
     ck_Real *kept;          // m, in single precision: where x began, as start's digits end; else not there
     ck_Real *before;        // m moved in the substep before the last one
     ck_Real *is_free;
     ck_Real *multiplier[CK_COLOUR_COUNT]; // over m; NULL: one sweep starts from 0 and needs none
     bool *is_held;                        // [rows] a pin in the row or the one below
     long *far_from;                       // [rows] sweep from which on bars are looked at one by one
-    ck_Real *state, *springs, *multipliers;
+    ck_Real *state, *springs, *multipliers, *met_from;
 };
 
 // What a cloth does not have is not in its loop; TURNED is a sweep's, HELD and FAR a row's.

@@ -18,7 +18,7 @@ typedef struct ck_ExplicitKind {
     void (*read)(const ck_Explicit *body, double *position, double *velocity);
 } ck_ExplicitKind;
 
-// In single precision there are rows alone, without what contact and steps that adapt ask for.
+// In single precision there are rows alone, without what steps that adapt ask for.
 extern const ck_ExplicitKind ck_explicit_rows, ck_explicit_list;
 #ifndef CK_SINGLE
 extern const ck_ExplicitKind ck_explicit_rows_single;
@@ -31,32 +31,33 @@ typedef struct ck_NearPart {
 
 // True where a part's marks, [size], are those of the last substep and its particles stand where they stood: then what
 // is loose of them is their state. Else notes the marks.
-CK_INLINE bool ck_near_is_kept(const ck_NearPart *part, int found, const uint8_t *marks, uint8_t *before, size_t size) {
+//   size  bytes
+CK_INLINE bool ck_near_is_kept(const ck_NearPart *part, int found, const void *marks, void *before, size_t size) {
+    const uint8_t *now = marks;
+    uint8_t *then = before;
     unsigned differ = part->first != found;
     for (size_t i = 0; i < size; i++) {
-        differ |= marks[i] ^ before[i];
-        before[i] = marks[i];
+        differ |= now[i] ^ then[i];
+        then[i] = now[i];
     }
     return !differ;
 }
 
-#ifndef CK_SINGLE
 // From a tile's place, or to it, to where the coordinates of loose ones stand so far apart. Read first, as stores might
 // be to where the rest is.
-CK_INLINE void ck_tile_take(double *to, long stride, const double *tile) {
-    const double x = tile[0], y = tile[CK_STRIPE], z = tile[2 * CK_STRIPE];
+CK_INLINE void ck_tile_take(double *to, long stride, const ck_Real *tile) {
+    const ck_Real x = tile[0], y = tile[CK_STRIPE], z = tile[2 * CK_STRIPE];
     to[0] = x;
     to[stride] = y;
     to[2 * stride] = z;
 }
 
-CK_INLINE void ck_tile_put(double *tile, const double *from, long stride) {
-    const double x = from[0], y = from[stride], z = from[2 * stride];
+CK_INLINE void ck_tile_put(ck_Real *tile, const double *from, long stride) {
+    const ck_Real x = (ck_Real)from[0], y = (ck_Real)from[stride], z = (ck_Real)from[2 * stride];
     tile[0] = x;
     tile[CK_STRIPE] = y;
     tile[2 * CK_STRIPE] = z;
 }
-#endif
 
 // The first member of every layout's own structure.
 struct ck_Explicit {

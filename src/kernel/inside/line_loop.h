@@ -24,7 +24,6 @@ typedef enum ck_LineKind {
 // Particles row by row, each coordinate in a plane of its own.
 struct ck_LinedCloth {
     ck_ProjectionHead head; // its contact of the rows with what is beside them, eight places a row of its own
-    ck_Follower follower;   // which knows particles, as contact knows places
     const ck_Loops *loops;
     ck_ProjectionRule rule;
     double carried, push[3]; // as in constraint_loop.h

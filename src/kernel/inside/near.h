@@ -3,18 +3,18 @@
 #ifndef CK_NEAR_H
 #define CK_NEAR_H
 
+#include "lane_surface.h"
 #include "lanes.h"
-#include "loops.h"
 
 // A solid has a core with axes, a ball a point.
 typedef enum ck_NearShape { CK_NEAR_PLANE, CK_NEAR_BALL, CK_NEAR_SOLID } ck_NearShape;
 
-CK_INLINE ck_NearShape ck_near_shape(const ck_NearSurface *surface) {
+CK_INLINE ck_NearShape ck_near_shape(const ck_LaneSurface *surface) {
     return surface->is_plane ? CK_NEAR_PLANE : surface->axis_count ? CK_NEAR_SOLID : CK_NEAR_BALL;
 }
 
 // From a surface's core, or a plane's point.
-CK_INLINE ck_Lanes3 ck_near_out(const ck_NearSurface *surface, ck_Lanes3 x) {
+CK_INLINE ck_Lanes3 ck_near_out(const ck_LaneSurface *surface, ck_Lanes3 x) {
     ck_Lanes3 from = ck_lanes3_subtract(x, ck_lanes3_all(surface->point)), out = from;
     for (int k = 0; k < surface->axis_count; k++) {
         const ck_Lanes half = ck_lanes_all(surface->half[k]);
@@ -26,7 +26,7 @@ CK_INLINE ck_Lanes3 ck_near_out(const ck_NearSurface *surface, ck_Lanes3 x) {
     return out;
 }
 
-CK_INLINE ck_Lanes ck_near_gap(const ck_NearSurface *surface, ck_Lanes3 x) {
+CK_INLINE ck_Lanes ck_near_gap(const ck_LaneSurface *surface, ck_Lanes3 x) {
     const ck_Lanes3 out = ck_near_out(surface, x);
     if (surface->is_plane) return ck_lanes3_dot(out, ck_lanes3_all(surface->normal));
     const ck_Lanes squared = ck_lanes3_dot(out, out);
@@ -42,7 +42,7 @@ CK_INLINE ck_Lanes ck_near_round_gap(ck_Lanes3 out, ck_Lanes radius, ck_Lanes3 *
     ck_Lanes guess;
     ck_lanes_inverse_root(&guess, &squared, 1);
     const ck_Lanes off = ck_lanes_minus(ck_lanes_all(1), squared * guess, guess);
-    const ck_Lanes inverse = ck_lanes_plus(guess, 0.5 * guess, off);
+    const ck_Lanes inverse = ck_lanes_plus(guess, (ck_Real)0.5 * guess, off);
     *normal = ck_lanes3_scale(inverse, out);
     return squared * inverse - radius;
 }
@@ -58,13 +58,13 @@ CK_INLINE ck_Lanes ck_near_sum(ck_Lanes3 a) {
 
 // More than particles go in a substep, |v|·dt + |a|·dt²/2 and some rounding, by at most √3: without a root.
 CK_INLINE ck_Lanes ck_near_most(ck_Lanes3 v, ck_Lanes3 a, double substep) {
-    const double dt = substep * (1 + 1e-9);
-    return dt * ck_near_sum(v) + 0.5 * dt * dt * ck_near_sum(a);
+    const ck_Real dt = (ck_Real)(substep * (1 + (CK_IS_SINGLE ? 1e-6 : 1e-9)));
+    return dt * ck_near_sum(v) + (ck_Real)0.5 * dt * dt * ck_near_sum(a);
 }
 
 // A bit for each that a surface may be in reach of. What is no number is near.
 //   shape  a constant of the caller: what the surface is
-CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_NearSurface *surface,
+CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_LaneSurface *surface,
                                 const ck_NearShape shape) {
     const ck_Lanes reach = ck_near_most(v, a, substep) + (surface->margin + surface->radius);
     const ck_Lanes3 out =

@@ -312,6 +312,11 @@ bool CK_LOOP(ck_row_press)(const ck_RowContact *contact, int row) {
     return is_pressed;
 }
 
+ck_ClothPress CK_LOOP(ck_cloth_press);
+void CK_LOOP(ck_cloth_press)(const ck_ProjectedCloth *cloth, int row) {
+    CK_LOOP(ck_row_press)(cloth->head.contact, row);
+}
+
 ck_RowMeets CK_LOOP(ck_row_meets);
 unsigned CK_LOOP(ck_row_meets)(const ck_RowContact *contact, int row) {
     unsigned bits = 0;

@@ -3,7 +3,15 @@
 #define CK_SPRING_LOOP_H
 
 #include "explicit_kind.h"
+#include "lane_surface.h"
 #include "rows.h"
+
+// A bit for each place of a vector.
+#ifdef CK_SINGLE
+typedef uint16_t ck_Marks;
+#else
+typedef uint8_t ck_Marks;
+#endif
 
 typedef struct ck_ExplicitCloth {
     ck_Explicit base; // see explicit_kind.h
@@ -20,9 +28,12 @@ typedef struct ck_ExplicitCloth {
     ck_Real *a;    // acceleration at the end of a call, else the springs' forces from above so far
     ck_Real *gain; // m/s a substep for each N: dt/m where free, else 0
     ck_Real *paired, *far_paired;
-    uint8_t *near, *near_before; // [span] of a row, [rows*span]: a bit for each of a vector that may touch
-    ck_NearPart *parts;          // [rows]
-    ck_Real *state, *pairs;
+    const ck_LaneSurface *surfaces; // of this substep
+    ck_LaneSurface *seen;           // [colliders] room for them in single precision
+    ck_Marks *near, *near_before;   // [span] of a row, [rows*span]: those that may touch
+    ck_NearPart *parts;             // [rows]
+    ck_Real *x_left, *v_left;       // tiles, in single precision: of what was near, where x's and v's digits end
+    ck_Real *state, *pairs, *left;
 } ck_ExplicitCloth;
 
 // What a scene does not have is not in its loop.
