@@ -62,6 +62,7 @@ typedef struct ck_Engine {
     int damped_order;           // of that where springs are damped; 0: the same
     int rest_order;             // of its rest; 0: it is exact at any step, or models no elasticity
     int damped_rest_order;      // of its rest where springs are damped
+    bool chains_keep_order;     // dampers change neither where springs are a chain
 
     // Translates the model into the engine's own parameters, in one named function, and builds its world.
     //   wanted  what the user sets, 0 where the engine's rule decides;  used  out, nothing left at 0 that the engine

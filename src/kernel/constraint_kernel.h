@@ -38,6 +38,10 @@
 // below.
 #define CK_LINES_KEPT 0.5
 
+// What makes the rate at a substep's end of its own one, and less the excess of the last one's: so dampers of a chain,
+// which one line finds all of, are of the second order, too.
+#define CK_LINES_RATE 1.5
+
 typedef struct ck_ProjectionRule {
     ck_Projection projection;
     double dt;

@@ -128,12 +128,14 @@ static bool allocate(struct ck_LinedCloth *lined) {
     return lined->is_fresh != NULL;
 }
 
-// Springs give way by rounding at least, or lines that reach straight from pin to pin would have no solution.
+// Springs give way by rounding at least, or lines that reach straight from pin to pin would have no solution. Drag
+// eases what a force moves in a substep, as the flight has it of the field: by (1 + carry)/2.
 static ck_LineSprings springs_of(const ck_RowSprings *springs, ck_SpringKind kind, const ck_ProjectionRule *rule,
                                  double weight) {
     const double softness = rule->compliance > 0 ? rule->compliance : 1 / springs->stiffness[kind],
                  least = ROUNDING * weight;
-    const double compliance = fmax(softness / ((1 - CK_LINES_KEPT) * rule->dt * rule->dt), least),
+    const double moved = 0.5 * (1 + rule->carry) * rule->dt * rule->dt,
+                 compliance = fmax(softness / ((1 - CK_LINES_KEPT) * moved), least),
                  gamma = springs->damping * softness / rule->dt;
     return (ck_LineSprings){(ck_Real)fmax(compliance / (1 + gamma), least), (ck_Real)compliance, (ck_Real)gamma,
                             (ck_Real)(1 / (1 + gamma)), (ck_Real)springs->rest[kind]};

@@ -1,5 +1,6 @@
 #include "native.h"
 
+#include "chain.h"
 #include "constraint_kernel.h"
 #include "explicit.h"
 #include "loops.h"
@@ -65,6 +66,7 @@ void ck_native_destroy(void *state) {
     ck_projection_destroy(native->cloth);
     ck_sweep_list_destroy(native->sweeps);
     ck_explicit_destroy(native->springs);
+    ck_chain_destroy(native->chain);
     free(native->compliance);
     free(native->gamma);
     free(native->bending);

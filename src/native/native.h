@@ -7,6 +7,7 @@
 #include "own_ledger.h"
 #include "rigid_contact.h"
 
+struct ck_Chain;
 struct ck_ProjectedCloth;
 struct ck_RowContact;
 struct ck_SweepList;
@@ -36,6 +37,7 @@ typedef struct ck_Native {
     struct ck_ProjectedCloth *cloth; // NULL: the list of springs
     struct ck_SweepList *sweeps;     // over that list, in vectors; NULL: one by one
     struct ck_Explicit *springs;     // of native-verlet alone
+    struct ck_Chain *chain;          // of native-lines alone; NULL: a cloth
 } ck_Native;
 
 // The numbers of the natives' own settings: the most doubles of an instruction; native-verlet's error a second that a

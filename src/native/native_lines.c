@@ -1,6 +1,7 @@
-// Compliant springs of regular cloths, of which whole rows, diagonals and columns are solved at once: a line is a
-// tridiagonal system. A pull at one end of it is felt at the other in one sweep, where Gauss-Seidel takes one for each
-// spring between.
+// Compliant springs of regular cloths, of which whole rows, diagonals and columns are solved at once, and of chains,
+// which are one line: a line is a tridiagonal system. A pull at one end of it is felt at the other in one sweep, where
+// Gauss-Seidel takes one for each spring between.
+#include "chain.h"
 #include "compliance.h"
 #include "constraint_kernel.h"
 #include "leapfrog.h"
@@ -43,50 +44,69 @@ static double tension_of(const ck_Model *model) {
 // lie before they move; at most 1/240 s, half of that where there are colliders, whose pushes are of first order; and a
 // quarter of drag's time. Half as long again keeps sheets of 20×20 and of 64×64 that are let go within 1 % of their
 // path for half a second, whether their springs have 1e3 or 1e6 N/m (`clothcheck bench`), but `cloth_64` with its soft
-// corners flips there.
-static double time_step_limit(const ck_Model *model) {
-    const double tension = tension_of(model),
-                 across = tension > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * tension)) : INFINITY;
-    return fmin(fmin(model->collider_count ? 1.0 / 480 : 1.0 / 240, 0.16 * across),
+// corners flips there. Of a chain, which does not, 0.2: a rope of 41 nodes over a pulley is then within 0.2 % of its
+// path.
+static double time_step_limit(const ck_Model *model, double share, double tension) {
+    const double across = tension > 0 ? sqrt(model->spacing / (ck_stability_lightness(model) * tension)) : INFINITY;
+    return fmin(fmin(model->collider_count ? 1.0 / 480 : 1.0 / 240, share * across),
                 ck_stability_drag_time(model, 0.25));
 }
 
-static void translate(const ck_Model *model, const ck_Settings *wanted, ck_Settings *used, ck_Ledger *ledger) {
+static void translate(const ck_Model *model, double limit, const ck_Settings *wanted, ck_Settings *used,
+                      ck_Ledger *ledger) {
     *used = (ck_Settings){.substeps = wanted->substeps,
                           .iterations = wanted->iterations ? wanted->iterations : 1,
                           .softness = wanted->softness};
     ck_settings_take_own(used, wanted);
-    if (!used->substeps) used->substeps = ck_stability_substeps(model, time_step_limit(model));
+    if (!used->substeps) used->substeps = ck_stability_substeps(model, limit);
     ck_own_ledger(ledger, model, used, "v*(1 - drag*dt/2)/(1 + drag*dt/2)", CK_EXACT);
     ck_compliance_ledger(ledger, model, used, "1/(k*dt^2)");
     ck_compliance_ledger_damping(ledger, model, used);
+}
+
+static ck_Status lay_out(ck_Native *native, ck_Error *error) {
+    return native->chain ? ck_native_lay_beside(native, error) : ck_leapfrog_lay_out(native, CK_PROJECT_LINES, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
                         ck_Ledger *ledger, ck_Error *error) {
     ck_RowSprings springs;
     ck_Native *native;
-    ck_Status status = ck_native_check_precision(wanted, ck_projection_fits(model, &springs), error);
+    ck_Chain *chain = NULL;
+    const bool is_cloth = ck_projection_fits(model, &springs);
+    ck_Status status = ck_native_check_precision(wanted, is_cloth, error);
+    if (!status && !is_cloth) status = ck_chain_create(&chain, model, error);
     if (status) return status;
-    if (!ck_projection_fits(model, &springs))
-        return ck_fail(error, CK_REFUSED,
-                       "lines are solved of regular cloths without bending springs, that nothing but springs, a field, "
-                       "drag and colliders that stay move");
-    translate(model, wanted, used, ledger);
+    const double limit = is_cloth ? time_step_limit(model, 0.16, tension_of(model))
+                                  : time_step_limit(model, 0.2, ck_chain_tension(chain, model));
+    translate(model, limit, wanted, used, ledger);
     status = ck_leapfrog_create(&native, model, used, error);
-    if (status) return status;
-    return ck_native_hand_out(state, native, ck_leapfrog_lay_out(native, CK_PROJECT_LINES, error));
+    if (status) {
+        ck_chain_destroy(chain);
+        return status;
+    }
+    native->chain = chain;
+    return ck_native_hand_out(state, native, lay_out(native, error));
 }
 
 // Without memory for lines the next step fails.
 static void release(void *state, int particle) {
     ck_leapfrog_release(state, particle);
-    ck_leapfrog_lay_out(state, CK_PROJECT_LINES, NULL);
+    lay_out(state, NULL);
+}
+
+static bool solve(ck_Native *native) {
+    ck_chain_solve(native->chain, native);
+    return true;
+}
+
+static void substep(ck_Native *native) {
+    ck_leapfrog_substep(native, solve);
 }
 
 static ck_StepResult step(void *state) {
     ck_Native *native = state;
-    return native->cloth ? ck_native_step_frame(native, NULL) : CK_STEP_DIVERGED;
+    return native->cloth || native->chain ? ck_native_step_frame(native, substep) : CK_STEP_DIVERGED;
 }
 
 static const ck_Setting settings[] = {
@@ -121,21 +141,23 @@ static const ck_Setting settings[] = {
 
 const ck_Engine ck_native_lines = {
     .name = "native-lines",
-    .about = "compliant springs, whole rows, columns and diagonals solved at once",
+    .about = "compliant springs, solved at once along chains, and a cloth's rows, columns and diagonals",
     .family = "native",
     .version = ck_own_version,
     .method = CK_METHOD_STOERMER_LINES,
     .terms = CK_TERM_SPRINGS | CK_TERM_DAMPING | CK_TERM_GRAVITY | CK_TERM_FORCE | CK_TERM_DRAG | CK_TERM_VELOCITY |
-             CK_TERM_COLLIDERS | CK_TERM_RELEASE,
+             CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES | CK_TERM_MOVING_COLLIDERS | CK_TERM_BODIES,
     .settings = settings,
     .order = 2,
     .damped_order = 1, // a line sees rates that the other kinds' lines have yet to change
     .rest_order = 2,
     .damped_rest_order = 1, // as of native-xpbd
+    .chains_keep_order = true,
     .create = create,
     .step = step,
     .read = ck_leapfrog_read,
     .release = release,
     .contact = ck_native_contact,
+    .turn = ck_native_turn,
     .destroy = ck_native_destroy,
 };

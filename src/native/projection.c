@@ -25,9 +25,10 @@ static ck_Status create_beside(ck_Native *native, ck_Error *error) {
     return status;
 }
 
-// Where there are colliders, contact beside the list of springs, whose surfaces and masses serve rows, too.
-static ck_Status lay_beside(ck_Native *native, ck_Error *error) {
+// Contact beside the list of springs, whose surfaces and masses serve rows, too.
+ck_Status ck_native_lay_beside(ck_Native *native, ck_Error *error) {
     const ck_Model *model = native->model;
+    if (!native->contact) return CK_OK;
     const ck_Status status = native->beside ? CK_OK : create_beside(native, error);
     for (int i = 0; i < ck_model_cloth_count(model) && !status; i++)
         native->beside->mass[i] = native->inverse_mass[i] > 0 ? model->mass[i] : 0;
@@ -56,7 +57,7 @@ static ck_Status lay_in_rows(ck_Native *native, const ck_ProjectionRule *rule, c
 ck_Status ck_native_lay_out(ck_Native *native, const ck_ProjectionRule *rule, ck_Error *error) {
     ck_RowSprings springs;
     const ck_SweepRule sweeps = rule_of(native, rule->projection);
-    ck_Status status = native->contact ? lay_beside(native, error) : CK_OK;
+    ck_Status status = ck_native_lay_beside(native, error);
     if (!status && ck_projection_fits(native->model, &springs)) return lay_in_rows(native, rule, &springs, error);
     ck_projection_destroy(native->cloth);
     native->cloth = NULL;

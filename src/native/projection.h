@@ -10,6 +10,10 @@
 // before. Errors: CK_NO_MEMORY; native then goes on with its list of springs one by one.
 ck_Status ck_native_lay_out(ck_Native *native, const ck_ProjectionRule *rule, ck_Error *error);
 
+// Of what is touched, what the particles that are free may: a part of that, for who has no sweeps. Nothing without
+// colliders. Errors: CK_NO_MEMORY.
+ck_Status ck_native_lay_beside(ck_Native *native, ck_Error *error);
+
 // The packs take other compliances.
 void ck_native_soften(ck_Native *native, ck_Projection projection);
 

@@ -1,6 +1,7 @@
 #include "precision.h"
 
 #include "rounding.h"
+#include "shape.h"
 #include "statistics.h"
 #include "trial.h"
 
@@ -172,15 +173,20 @@ static double fit_order(const ck_Precision *precision, const ck_JournalRow *rows
     return *points < 3 ? NAN : ck_slope(x, y, *points);
 }
 
+// 0: it has none, or is exact.
+static int order_of(const ck_Engine *engine, const ck_Model *model, bool is_static) {
+    const bool is_damped = (model->terms & CK_TERM_DAMPING) && !(engine->chains_keep_order && ck_shape_is_chain(model));
+    if (is_static) return is_damped ? engine->damped_rest_order : engine->rest_order;
+    return is_damped && engine->damped_order ? engine->damped_order : engine->order;
+}
+
 static void summarise_order(const ck_Precision *precision, const ck_JournalRow *rows, const ck_Engine *engine,
                             ck_Csv *csv) {
     int points;
     char reason[200];
     // the error of a scene at rest is that of the rest: to move wrongly on the way to it costs nothing
     bool is_static = precision->comparison->truth.reference.is_static;
-    bool is_damped = precision->comparison->model.terms & CK_TERM_DAMPING;
-    const int moving = is_damped && engine->damped_order ? engine->damped_order : engine->order;
-    int theory = !is_static ? moving : is_damped ? engine->damped_rest_order : engine->rest_order;
+    int theory = order_of(engine, &precision->comparison->model, is_static);
     double order = fit_order(precision, rows, engine, &points), expected = theory > 0 ? theory : NAN;
     if (points < 3)
         snprintf(reason, sizeof reason, "only %d steps have an error between %.3g and %g", points,

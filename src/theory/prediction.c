@@ -1,5 +1,6 @@
 #include "prediction.h"
 
+#include "constraint_kernel.h"
 #include "rest_prediction.h"
 #include "time_scale.h"
 #include "vector.h"
@@ -122,8 +123,9 @@ typedef struct Oscillator {
     double k, c, m, rest, dt;
     uint32_t iterations;
     double u, v, a;
-    int step;    // since the start
-    double held; // a length that a method goes on with, m
+    int step;      // since the start
+    double held;   // a length that a method goes on with, m
+    double behind; // m/s, half a substep before
 } Oscillator;
 
 // m·v' = m·v − dt·(k·u' + c·v'), u' = u + dt·v'.
@@ -176,6 +178,21 @@ static void bullet_link(Oscillator *o) {
     o->u = moved;
 }
 
+// Of one spring along one line, what native-lines has of chains: the flight, a share of the last pull, and what the
+// spring finds, damped by the rate at the substep's end; see native/chain.c.
+static void line(Oscillator *o) {
+    const double weight = 1 / o->m, damping = o->c / (o->k * o->dt), gamma = CK_LINES_RATE * damping,
+                 compliance = 1 / (o->k * (1 - CK_LINES_KEPT) * o->dt * o->dt);
+    const double last = o->step ? o->behind : o->v, flown = o->u + o->dt * last;
+    double moved = flown + (o->step ? CK_LINES_KEPT * o->held : 0);
+    moved -= weight * (moved + gamma * (moved - o->u) - (CK_LINES_RATE - 1) * damping * o->dt * last) /
+             ((1 + gamma) * weight + compliance);
+    o->held = (o->step++ ? 1 : 2) * (moved - flown);
+    o->behind = (moved - o->u) / o->dt;
+    o->v = o->behind + 0.5 * (o->behind - last);
+    o->u = moved;
+}
+
 static bool oscillate(const ck_Model *model, const ck_Settings *used, double time, double *position, double *velocity,
                       void (*substep)(Oscillator *)) {
     if (model->drag > 0) return false; // each method takes drag in its own way
@@ -220,6 +237,11 @@ static bool oscillate_symplectic(const ck_Model *model, const ck_Settings *used,
 static bool oscillate_bullet_link(const ck_Model *model, const ck_Settings *used, double time, double *position,
                                   double *velocity) {
     return !(used->softness > 0) && oscillate(model, used, time, position, velocity, bullet_link);
+}
+
+static bool oscillate_line(const ck_Model *model, const ck_Settings *used, double time, double *position,
+                           double *velocity) {
+    return !(used->softness > 0) && oscillate(model, used, time, position, velocity, line);
 }
 
 // All constraints at once: nothing stretches.
@@ -282,6 +304,7 @@ static const Theory theories[] = {
     {CK_METHOD_SYMPLECTIC_EULER, "terminal_speed", drag_damp_first},
     {CK_METHOD_SEMI_IMPLICIT_ODE, "terminal_speed", drag_then_scale},
     {CK_METHOD_VELOCITY_VERLET, "oscillator", oscillate_verlet},
+    {CK_METHOD_STOERMER_LINES, "oscillator", oscillate_line},
     {CK_METHOD_XPBD, "oscillator", oscillate_backward},
     {CK_METHOD_BULLET_PBD, "oscillator", oscillate_bullet_link},
     {CK_METHOD_IMPLICIT_EULER, "oscillator", oscillate_backward},

@@ -119,7 +119,8 @@ static void plain_sweep(const Plain *plain) {
     }
     const int count = 3 * model->particle_count;
     for (int i = 0; i < count; i++) plain->pulls[i] -= plain->x[i];
-    fixture_sweep_lines(model, plain->dt, plain->order, plain->start, plain->x, plain->multipliers);
+    fixture_sweep_lines(model, plain->dt, 1 / (1 + 0.5 * model->drag * plain->dt), plain->order, plain->start, plain->x,
+                        plain->multipliers);
     for (int i = 0; i < count; i++) plain->pulls[i] += plain->x[i];
 }
 

@@ -44,7 +44,7 @@ static void check_all(const char *text, const char *metric, Allowed allowed) {
         assert_near(what, value, truth, allowed_for(engine, &allowed) * (truth > 0 ? truth : 1));
         ck_trajectory_free(&trajectory);
     }
-    assert_int_equal(checked, fixture_leaves_natives() ? 5 : 8); // all but native-rope
+    assert_int_equal(checked, fixture_leaves_natives() ? 5 : 9); // all but native-rope
     fixture_free_truth(&fixture);
 }
 

@@ -2,6 +2,7 @@
 
 #include "constraint_kernel.h"
 #include "equilibrium.h"
+#include "shape.h"
 #include "time_scale.h"
 #include "vector.h"
 
@@ -86,7 +87,7 @@ static void solve_line(const Substep *step, const double *before, double *now, i
                      both = weight + ck_model_inverse_mass(step->model, spring->b),
                      softness = step->used->softness > 0 ? step->used->softness : 1 / spring->stiffness,
                      gamma = spring->damping * softness / step->dt,
-                     compliance = softness / (step->found * step->dt * step->dt);
+                     compliance = softness / (step->found * step->eased * step->dt * step->dt);
         for (int axis = 0; axis < 3; axis++) normal[axis] = way[axis] / length;
         const double coupling = i ? -weight * ck_dot(normal, normal - 3) : 0;
         shares[i] = coupling * inverse;
@@ -311,6 +312,10 @@ bool ck_prediction_rest(const ck_Model *model, const ck_Engine *engine, const ck
                         double *position) {
     const unsigned foreign = CK_TERM_COLLIDERS | CK_TERM_RELEASE | CK_TERM_MOVES;
     ck_Method method = engine->method;
+    ck_RowSprings rows;
+    // of other chains the lines are not those of the order
+    if (method == CK_METHOD_STOERMER_LINES && !ck_shape_is_chain(model) && !ck_projection_fits(model, &rows))
+        return false;
     if (!ck_prediction_sweeps(method) || !model->spring_count || !used->iterations || (model->terms & foreign))
         return false;
     size_t vector = 3 * (size_t)model->particle_count, count = (size_t)model->spring_count;
