@@ -38,8 +38,8 @@
 // below.
 #define CK_LINES_KEPT 0.5
 
-// What makes the rate at a substep's end of its own one, and less the excess of the last one's: so dampers of a chain,
-// which one line finds all of, are of the second order, too.
+// The rate at a substep's end is this times its mean in the substep, less 0.5 times its mean in the last one. So
+// dampers of a chain, whose rates one line finds all of, are of the second order, too.
 #define CK_LINES_RATE 1.5
 
 typedef struct ck_ProjectionRule {

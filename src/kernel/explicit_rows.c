@@ -81,6 +81,15 @@ static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, cons
     return found;
 }
 
+// Of what is near no longer nothing is left.
+static void forget_left(const ck_ExplicitCloth *cloth, int row) {
+    const ck_Place first = ck_rows_place(&cloth->rows, row, 0);
+    const size_t bytes = 3 * sizeof(ck_Real) * (size_t)cloth->rows.stride;
+    if (!cloth->left) return;
+    memset(cloth->x_left + first.tile, 0, bytes);
+    memset(cloth->v_left + first.tile, 0, bytes);
+}
+
 static void see(ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int count) {
 #ifdef CK_SINGLE
     follow(cloth);
@@ -105,6 +114,7 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
         if (!ck_near_is_kept(part, loose->count, cloth->near, cloth->near_before + span * (size_t)row,
                              span * sizeof *cloth->near)) {
             *part = (ck_NearPart){loose->count, take_row(cloth, row, near, loose) - loose->count};
+            forget_left(cloth, row);
             are_kept = false;
         }
         loose->count += part->count;
@@ -145,6 +155,9 @@ static void read_state(const ck_Explicit *body, double *position, double *veloci
     const ck_ExplicitCloth *cloth = (const ck_ExplicitCloth *)body;
     ck_rows_store(&cloth->rows, position, cloth->x, cloth->origin);
     ck_rows_store(&cloth->rows, velocity, cloth->v, none);
+    if (!cloth->left) return;
+    ck_rows_add(&cloth->rows, position, cloth->x_left);
+    ck_rows_add(&cloth->rows, velocity, cloth->v_left);
 }
 
 static void destroy(ck_Explicit *body) {

@@ -26,7 +26,7 @@ struct ck_Chain {
     double *flown;  // [3*n] m: where the flight ended, and surfaces pushed that
     double *pulled; // [3*n] m: what springs moved the last substep's end by
     double *placed; // [3*n] m: where springs have put what surfaces push
-    double *before; // [3*n] m: the way of the substep before, at the speed that impacts leave of it
+    double *before; // [3*n] m: the way of the substep before; of what is free as its speed now, after impacts, has it
     bool *is_fresh; // [n] has just begun to move
     bool has_moved; // a substep
     double *state;
@@ -44,8 +44,8 @@ static ck_Status find_ends(Ends *ends, const ck_Model *model, ck_Error *error) {
             int *spring = ends[k ? model->springs[i].b : model->springs[i].a].spring;
             if (spring[0] >= 0 && spring[1] >= 0)
                 return ck_fail(error, CK_REFUSED,
-                               "lines are solved of chains of springs, and of regular cloths without bending springs, "
-                               "that nothing but springs, a field, drag and colliders that stay move");
+                               "lines are solved of open chains of springs, and of regular cloths that have no bending "
+                               "springs and that only springs, a field, drag and colliders that stay move");
             spring[spring[0] >= 0] = i;
         }
     return CK_OK;
@@ -143,8 +143,9 @@ double ck_chain_tension(const ck_Chain *chain, const ck_Model *model) {
     return tension;
 }
 
-// −C − α̃·λ − γ̃·∇C·v·dt, over 1 + γ̃, of a link whose way and length are given, v at the substep's end; γ̃ holds of what
-// is yet to be found of v, half as much again as its mean in the substep. Drag eases what a force moves in one.
+// −C − α̃·λ − γ̃·∇C·v·dt, over 1 + γ̃, of a link whose way and length are given. v·dt, of the substep's end, is 1.5 of
+// this substep's way less 0.5 of the last one's, and γ̃ counts the part that is yet to be found. Drag eases what a force
+// moves.
 //   yield  out: the softness of its row, α̃/(1 + γ̃), 1/kg
 static double residual_of(const ck_Chain *chain, const ck_Native *native, const Link *link, const double *way,
                           double length, double *yield) {
@@ -168,7 +169,7 @@ static double residual_of(const ck_Chain *chain, const ck_Native *native, const 
 
 // Eliminates each link after the one before it. One whose ends are both held, or in one place, does nothing.
 static void eliminate(const ck_Chain *chain, const ck_Native *native) {
-    double before = 0, inverse = 0; // of the row before: its right side, and one over its pivot
+    double right = 0, inverse = 0; // of the row before: its right side, and one over its pivot
     for (int i = 0; i < chain->count; i++) {
         Link *link = &chain->links[i];
         const double weight_a = native->inverse_mass[link->a], weight_b = native->inverse_mass[link->b];
@@ -177,15 +178,15 @@ static void eliminate(const ck_Chain *chain, const ck_Native *native) {
         const double length = ck_length(way);
         for (int axis = 0; axis < 3; axis++) link->normal[axis] = length > 0 ? way[axis] / length : 0;
         if (weight_a + weight_b == 0 || !(length > 0)) {
-            link->change = link->share = before = inverse = 0;
+            link->change = link->share = right = inverse = 0;
             continue;
         }
         const double residual = residual_of(chain, native, link, way, length, &yield),
                      coupling = link->goes_on ? -weight_a * ck_dot(link->normal, link[-1].normal) : 0;
         link->share = coupling * inverse;
-        before = residual - link->share * before;
+        right = residual - link->share * right;
         inverse = 1 / (weight_a + weight_b + yield - link->share * coupling);
-        link->change = before * inverse;
+        link->change = right * inverse;
     }
 }
 

@@ -203,11 +203,10 @@ static void fly(ck_Native *native, int particle, bool may_meet) {
 
 void ck_native_fly(ck_Native *native) {
     ck_RowContact *beside = native->beside;
-    const ck_Loops *loops = ck_native_loops(native);
     const int particles = ck_model_cloth_count(native->model);
     ck_row_contact_take(beside->x, native->position, particles);
     for (int row = 0; row < beside->rows.rows; row++) {
-        const unsigned bits = loops->row_meets(beside, row);
+        const unsigned bits = beside->loops->row_meets(beside, row);
         ck_row_contact_begin(beside, row);
         for (int lane = 0; lane < CK_STRIPE && CK_STRIPE * row + lane < particles; lane++)
             if (native->inverse_mass[CK_STRIPE * row + lane] > 0) fly(native, CK_STRIPE * row + lane, bits >> lane & 1);
@@ -219,11 +218,10 @@ void ck_native_project(ck_Native *native) {
     ck_RowContact *beside = native->beside;
     if (native->rigid) ck_rigid_contact_project(native->rigid, native);
     if (!beside) return;
-    const ck_Loops *loops = ck_native_loops(native);
     const int particles = ck_model_cloth_count(native->model);
     ck_row_contact_take(beside->x, native->position, particles);
     for (int row = 0; row < beside->rows.rows; row++)
-        if (loops->row_press(beside, row)) ck_row_contact_give(beside, row, native->position, particles);
+        if (beside->loops->row_press(beside, row)) ck_row_contact_give(beside, row, native->position, particles);
 }
 
 void ck_native_meet(ck_Native *native,

@@ -173,7 +173,8 @@ static void test_refusals(void **state) {
     (void)state;
     static const struct {
         const char *bars, *why;
-    } refused[] = {{"[0, 1], [0, 2], [0, 3]", "of chains of springs"}, {"[0, 1], [1, 2], [2, 0]", "a closed chain"}};
+    } refused[] = {{"[0, 1], [0, 2], [0, 3]", "of open chains of springs"},
+                   {"[0, 1], [1, 2], [2, 0]", "a closed chain"}};
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         char text[600];
         Fixture fixture;

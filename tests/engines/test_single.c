@@ -163,6 +163,7 @@ static const Touched touched[] = {
     {"{sphere: {center: [%.17g, -0.52, 0.6], radius: 0.5, friction: 0.6}}", {0.4}},
     {"{box: {center: [%.17g, -0.15, 0.6], size: [0.6, 0.26, 0.4], rounding: 0.03, friction: 0.3}}", {0.4}},
     {"{box: {center: [%.17g, -0.13, 0.6], size: [0.6, 0.2, 0.4], along: [1, 0.1, 0.3], friction: 0.3}}", {0.4}},
+    {"{cylinder: {point: [%.17g, -0.12, 900], axis: [0, 0, 1], radius: 0.1, friction: 0.5}}", {0.4}},
     {"{capsule: {from: [%.17g, -0.12, 0.5], to: [%.17g, -0.12, 0.7], radius: 0.1, friction: 0.5}}", {0.1, 0.8}},
     {"{plane: {point: [%.17g, -0.34, 0], normal: [0.6, 0.8, 0]}}, "
      "{plane: {point: [%.17g, -0.34, 0], normal: [-0.6, 0.8, 0]}}",
@@ -309,8 +310,9 @@ static void test_refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_precision), cmocka_unit_test(test_flight),          cmocka_unit_test(test_bits),
-        cmocka_unit_test(test_let_go),    cmocka_unit_test(test_contact),         cmocka_unit_test(test_let_go_in_contact), cmocka_unit_test(test_slide),
-        cmocka_unit_test(test_rest),      cmocka_unit_test(test_moving_collider), cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_precision), cmocka_unit_test(test_flight),  cmocka_unit_test(test_bits),
+        cmocka_unit_test(test_let_go),    cmocka_unit_test(test_contact), cmocka_unit_test(test_let_go_in_contact),
+        cmocka_unit_test(test_slide),     cmocka_unit_test(test_rest),    cmocka_unit_test(test_moving_collider),
+        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
