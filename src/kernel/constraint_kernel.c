@@ -34,6 +34,21 @@ ck_Status ck_projection_create(ck_ProjectedCloth **cloth, const ck_ProjectionSet
     return status;
 }
 
+static bool meet(void *state, int place, const double *field, double *x, double *v, double *impulse) {
+    const ck_ProjectionHead *head = head_of(state);
+    return head->follower.meet(head->follower.state, head->kind->particle_at(state, place), field, x, v, impulse);
+}
+
+static void press(void *state, int place, const double *from, double *depth, double *held, double *x, double *impulse) {
+    const ck_ProjectionHead *head = head_of(state);
+    head->follower.press(head->follower.state, head->kind->particle_at(state, place), from, depth, held, x, impulse);
+}
+
+ck_Follower ck_projection_follower(ck_ProjectedCloth *cloth, const ck_Follower *follower) {
+    ((ck_ProjectionHead *)cloth)->follower = *follower;
+    return (ck_Follower){cloth, meet, press};
+}
+
 void ck_projection_step(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves) {
     if (head_of(cloth)->contact) ck_row_contact_forget_impulse(head_of(cloth)->contact);
     head_of(cloth)->kind->step(cloth, substeps, waves);

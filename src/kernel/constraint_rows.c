@@ -167,23 +167,10 @@ static int particle_at(const ck_ProjectedCloth *cloth, int place) {
     return place / stride * cloth->rows.columns + lane * cloth->rows.span + vector;
 }
 
-static bool meet(void *state, int place, const double *field, double *x, double *v, double *impulse) {
-    const ck_ProjectedCloth *cloth = state;
-    const ck_Follower *follower = &cloth->head.follower;
-    return follower->meet(follower->state, particle_at(cloth, place), field, x, v, impulse);
-}
-
-static void press(void *state, int place, const double *from, double *depth, double *held, double *x, double *impulse) {
-    const ck_ProjectedCloth *cloth = state;
-    const ck_Follower *follower = &cloth->head.follower;
-    follower->press(follower->state, particle_at(cloth, place), from, depth, held, x, impulse);
-}
-
 // What moves starts as without contact.
 static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
     const ck_Rows *rows = &cloth->rows;
-    const ck_Follower follower = {cloth, meet, press};
-    cloth->head.follower = setup->beside->follower;
+    const ck_Follower follower = ck_projection_follower(cloth, &setup->beside->follower);
     ck_Status status = ck_sixteens_create(&cloth->head, setup->beside, &follower, rows->rows * rows->stride, error);
     if (status) return status;
     for (int i = 0; i < rows->rows * rows->columns; i++)
@@ -207,4 +194,13 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
 }
 #endif
 
-const ck_ProjectionKind ck_projection_rows = {create, destroy, ck_projection_run, read_state, touch};
+const ck_ProjectionKind ck_projection_rows = {
+    .create = create,
+    .destroy = destroy,
+    .step = ck_projection_run,
+    .read = read_state,
+    .touch = touch,
+#ifdef CK_SINGLE
+    .particle_at = particle_at,
+#endif
+};

@@ -199,30 +199,18 @@ static ck_Status create(ck_ProjectedCloth **out, const ck_ProjectionSetup *setup
     return CK_OK;
 }
 
-static int particle_at(const struct ck_LinedCloth *lined, int place) {
+static int particle_at(const ck_ProjectedCloth *cloth, int place) {
+    const struct ck_LinedCloth *lined = of(cloth);
     const int places = (int)ck_line_places(lined);
     return place / places * lined->columns + place % places;
-}
-
-static bool meet(void *state, int place, const double *field, double *x, double *v, double *impulse) {
-    const struct ck_LinedCloth *lined = state;
-    const ck_Follower *follower = &lined->head.follower;
-    return follower->meet(follower->state, particle_at(lined, place), field, x, v, impulse);
-}
-
-static void press(void *state, int place, const double *from, double *depth, double *held, double *x, double *impulse) {
-    const struct ck_LinedCloth *lined = state;
-    const ck_Follower *follower = &lined->head.follower;
-    follower->press(follower->state, particle_at(lined, place), from, depth, held, x, impulse);
 }
 
 // What moves starts as without contact.
 static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error) {
     struct ck_LinedCloth *lined = of(cloth);
     const ck_RowContact *beside = setup->beside;
-    const ck_Follower follower = {lined, meet, press};
+    const ck_Follower follower = ck_projection_follower(cloth, &beside->follower);
     const long places = lined->rows * ck_line_places(lined);
-    lined->head.follower = beside->follower;
 #ifdef CK_SINGLE
     const ck_Status status = ck_sixteens_create(&lined->head, beside, &follower, places, error);
 #else
@@ -237,4 +225,4 @@ static ck_Status touch(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup
     return status;
 }
 
-const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, touch};
+const ck_ProjectionKind ck_projection_lines = {create, destroy, step, read_state, touch, particle_at};

@@ -5,13 +5,15 @@
 #include "constraint_kernel.h"
 #include "lane_surface.h"
 
-//   touch  lets a cloth touch what its set-up says
+//   touch        lets a cloth touch what its set-up says
+//   particle_at  which particle is at a place beside the cloth; NULL: contact is not beside
 typedef struct ck_ProjectionKind {
     ck_Status (*create)(ck_ProjectedCloth **cloth, const ck_ProjectionSetup *setup, ck_Error *error);
     void (*destroy)(ck_ProjectedCloth *cloth);
     void (*step)(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
     void (*read)(const ck_ProjectedCloth *cloth, double *position, double *velocity, double *before);
     ck_Status (*touch)(ck_ProjectedCloth *cloth, const ck_ProjectionSetup *setup, ck_Error *error);
+    int (*particle_at)(const ck_ProjectedCloth *cloth, int place);
 } ck_ProjectionKind;
 
 // The first member of each kind's structure.
@@ -35,6 +37,9 @@ ck_Status ck_sixteens_create(ck_ProjectionHead *head, const struct ck_RowContact
 // Where its surfaces are from an origin; of a cloth without contact nothing.
 void ck_sixteens_see(ck_ProjectionHead *head, const double origin[3], double size);
 #endif
+
+// Follows a cloth's places beside it by what follows its particles.
+ck_Follower ck_projection_follower(ck_ProjectedCloth *cloth, const ck_Follower *follower);
 
 // The step of a kind, in sweep_schedule.c.
 void ck_projection_run(ck_ProjectedCloth *cloth, uint32_t substeps, ck_Waves *waves);
