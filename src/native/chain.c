@@ -15,7 +15,9 @@
 // leaves it: Δλ is change less the share that the next row has in it times its Δλ.
 typedef struct Link {
     int spring, a, b;
-    bool goes_on; // from the link before
+    bool goes_on;                     // from the link before
+    double rest, compliance, damping; // m, 1/kg, 1: L, α̃, c/(k·dt)
+    double taken, yield;              // 1/(1 + γ̃), and the softness of its row, α̃/(1 + γ̃), 1/kg
     double normal[3];
     double change, share;
 } Link;
@@ -143,28 +145,36 @@ double ck_chain_tension(const ck_Chain *chain, const ck_Model *model) {
     return tension;
 }
 
+// Drag eases what a force moves in a substep, as the flight has it of the field.
+void ck_chain_soften(ck_Chain *chain, const ck_Native *native) {
+    const double dt = native->dt, moved = (1 - CK_LINES_KEPT) * dt * dt / (1 + 0.5 * native->model->drag * dt);
+    for (int i = 0; i < chain->count; i++) {
+        Link *link = &chain->links[i];
+        const ck_Spring *spring = &native->model->springs[link->spring];
+        const double softness = ck_compliance_of(spring, &native->used),
+                     least = ROUNDING * (native->inverse_mass[link->a] + native->inverse_mass[link->b]);
+        link->rest = spring->rest;
+        link->compliance = fmax(softness / moved, least);
+        link->damping = spring->damping * softness / dt;
+        link->taken = 1 / (1 + CK_LINES_RATE * link->damping);
+        link->yield = fmax(link->compliance * link->taken, least);
+    }
+}
+
 // −C − α̃·λ − γ̃·∇C·v·dt, over 1 + γ̃, of a link whose way and length are given. v·dt, of the substep's end, is 1.5 of
-// this substep's way less 0.5 of the last one's, and γ̃ counts the part that is yet to be found. Drag eases what a force
-// moves.
-//   yield  out: the softness of its row, α̃/(1 + γ̃), 1/kg
+// this substep's way less 0.5 of the last one's, and γ̃ counts the part that is yet to be found.
 static double residual_of(const ck_Chain *chain, const ck_Native *native, const Link *link, const double *way,
-                          double length, double *yield) {
-    const ck_Spring *spring = &native->model->springs[link->spring];
-    const double dt = native->dt, softness = ck_compliance_of(spring, &native->used),
-                 least = ROUNDING * (native->inverse_mass[link->a] + native->inverse_mass[link->b]),
-                 eased = 1 / (1 + 0.5 * native->model->drag * dt),
-                 compliance = fmax(softness / ((1 - CK_LINES_KEPT) * eased * dt * dt), least),
-                 damping = spring->damping * softness / dt, gamma = CK_LINES_RATE * damping;
-    double residual = spring->rest - length - compliance * native->multiplier[link->spring];
-    if (damping > 0) {
+                          double length) {
+    double residual = link->rest - length - link->compliance * native->multiplier[link->spring];
+    if (link->damping > 0) {
         double began[3], moved[3], before[3];
         ck_subtract(began, native->origin + 3 * link->b, native->origin + 3 * link->a);
         ck_subtract(moved, way, began);
         ck_subtract(before, chain->before + 3 * link->b, chain->before + 3 * link->a);
-        residual -= gamma * ck_dot(moved, link->normal) - (CK_LINES_RATE - 1) * damping * ck_dot(before, link->normal);
+        residual -= link->damping *
+                    (CK_LINES_RATE * ck_dot(moved, link->normal) - (CK_LINES_RATE - 1) * ck_dot(before, link->normal));
     }
-    *yield = fmax(compliance / (1 + gamma), least);
-    return residual / (1 + gamma);
+    return residual * link->taken;
 }
 
 // Eliminates each link after the one before it. One whose ends are both held, or in one place, does nothing.
@@ -173,19 +183,19 @@ static void eliminate(const ck_Chain *chain, const ck_Native *native) {
     for (int i = 0; i < chain->count; i++) {
         Link *link = &chain->links[i];
         const double weight_a = native->inverse_mass[link->a], weight_b = native->inverse_mass[link->b];
-        double way[3], yield;
+        double way[3];
         ck_subtract(way, native->position + 3 * link->b, native->position + 3 * link->a);
-        const double length = ck_length(way);
-        for (int axis = 0; axis < 3; axis++) link->normal[axis] = length > 0 ? way[axis] / length : 0;
+        const double length = ck_length(way), over = length > 0 ? 1 / length : 0;
+        for (int axis = 0; axis < 3; axis++) link->normal[axis] = over * way[axis];
         if (weight_a + weight_b == 0 || !(length > 0)) {
             link->change = link->share = right = inverse = 0;
             continue;
         }
-        const double residual = residual_of(chain, native, link, way, length, &yield),
+        const double residual = residual_of(chain, native, link, way, length),
                      coupling = link->goes_on ? -weight_a * ck_dot(link->normal, link[-1].normal) : 0;
         link->share = coupling * inverse;
         right = residual - link->share * right;
-        inverse = 1 / (weight_a + weight_b + yield - link->share * coupling);
+        inverse = 1 / (weight_a + weight_b + link->yield - link->share * coupling);
         link->change = right * inverse;
     }
 }

@@ -15,6 +15,9 @@ void ck_chain_destroy(ck_Chain *chain);
 // N, at most, of any: all that hangs on it, or what pins stretch it by.
 double ck_chain_tension(const ck_Chain *chain, const ck_Model *model);
 
+// Takes up how stiff springs are in a substep: before the first one, and when a particle is let go.
+void ck_chain_soften(ck_Chain *chain, const ck_Native *native);
+
 // What comes after a substep's flight; see CK_PROJECT_LINES and CK_LINES_KEPT. Cost: three passes over springs a sweep.
 void ck_chain_solve(ck_Chain *chain, ck_Native *native);
 

@@ -65,7 +65,9 @@ static void translate(const ck_Model *model, double limit, const ck_Settings *wa
 }
 
 static ck_Status lay_out(ck_Native *native, ck_Error *error) {
-    return native->chain ? ck_native_lay_beside(native, error) : ck_leapfrog_lay_out(native, CK_PROJECT_LINES, error);
+    if (!native->chain) return ck_leapfrog_lay_out(native, CK_PROJECT_LINES, error);
+    ck_chain_soften(native->chain, native);
+    return ck_native_lay_beside(native, error);
 }
 
 static ck_Status create(void **state, const ck_Model *model, const ck_Settings *wanted, ck_Settings *used,
