@@ -81,15 +81,24 @@ CK_INLINE ck_Lanes ck_lanes_absolute(ck_Lanes a) {
     return (ck_Lanes)((ck_LaneBits)a & CK_LANE_BITS_BUT_SIGN);
 }
 
-// A vector of a tile: its three coordinates stand a stripe apart.
+// Three coordinates that stand so far apart.
+CK_INLINE ck_Lanes3 ck_lanes3_load_apart(const ck_Real *from, long apart) {
+    return (ck_Lanes3){ck_lanes_load(from), ck_lanes_load(from + apart), ck_lanes_load(from + 2 * apart)};
+}
+
+CK_INLINE void ck_lanes3_store_apart(ck_Real *to, long apart, ck_Lanes3 value) {
+    ck_lanes_store(to, value.x);
+    ck_lanes_store(to + apart, value.y);
+    ck_lanes_store(to + 2 * apart, value.z);
+}
+
+// A vector of a tile, whose coordinates stand a stripe apart.
 CK_INLINE ck_Lanes3 ck_lanes3_load(const ck_Real *from) {
-    return (ck_Lanes3){ck_lanes_load(from), ck_lanes_load(from + CK_STRIPE), ck_lanes_load(from + 2 * CK_STRIPE)};
+    return ck_lanes3_load_apart(from, CK_STRIPE);
 }
 
 CK_INLINE void ck_lanes3_store(ck_Real *to, ck_Lanes3 value) {
-    ck_lanes_store(to, value.x);
-    ck_lanes_store(to + CK_STRIPE, value.y);
-    ck_lanes_store(to + 2 * CK_STRIPE, value.z);
+    ck_lanes3_store_apart(to, CK_STRIPE, value);
 }
 
 CK_INLINE ck_Lanes3 ck_lanes3_all(const ck_Real value[3]) {

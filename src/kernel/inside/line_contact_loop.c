@@ -14,33 +14,23 @@ CK_INLINE Group group_at(const struct ck_LinedCloth *cloth, int row, long column
     return (Group){row * cloth->stride + column, ck_tile_of(place), place};
 }
 
-CK_INLINE ck_Lanes3 load(const struct ck_LinedCloth *cloth, const double *planes, long at) {
-    return (ck_Lanes3){ck_lanes_load(planes + at), ck_lanes_load(planes + at + cloth->plane),
-                       ck_lanes_load(planes + at + 2 * cloth->plane)};
-}
-
-CK_INLINE void store(const struct ck_LinedCloth *cloth, double *planes, long at, ck_Lanes3 value) {
-    ck_lanes_store(planes + at, value.x);
-    ck_lanes_store(planes + at + cloth->plane, value.y);
-    ck_lanes_store(planes + at + 2 * cloth->plane, value.z);
-}
-
 // As predict of line_loop.c; a way is carried·(x − from) + push, and what speed it had at its start stands half way
 // between that and keep·(x − from).
 CK_INLINE void fly(const struct ck_LinedCloth *cloth, const Group *at, bool is_last) {
     const ck_RowContact *contact = cloth->head.contact;
     const ck_Lanes none = {0}, keep = ck_lanes_all(cloth->rule.keep);
     const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(contact->mass + at->single));
-    const ck_Lanes3 x = load(cloth, cloth->x, at->plane),
+    const ck_Lanes3 x = ck_lanes3_load_apart(cloth->x + at->plane, cloth->plane),
                     moved = ck_lanes3_subtract(x, ck_lanes3_load(contact->from + at->tile)),
-                    pulled = ck_lanes3_subtract(x, load(cloth, cloth->flown, at->plane));
+                    pulled = ck_lanes3_subtract(x, ck_lanes3_load_apart(cloth->flown + at->plane, cloth->plane));
     const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(cloth->push), ck_lanes_all(cloth->carried), moved),
                     gain = ck_lanes3_subtract_scaled(way, keep, moved);
     const ck_Lanes3 flown = ck_lanes3_choose(is_free, ck_lanes3_add(x, way), x);
-    store(cloth, cloth->start, at->plane, x);
-    store(cloth, cloth->flown, at->plane, flown);
-    store(cloth, cloth->x, at->plane, ck_lanes3_add_scaled(flown, ck_lanes_all(CK_LINES_KEPT), pulled));
-    if (is_last) store(cloth, cloth->before, at->plane, moved);
+    ck_lanes3_store_apart(cloth->start + at->plane, cloth->plane, x);
+    ck_lanes3_store_apart(cloth->flown + at->plane, cloth->plane, flown);
+    ck_lanes3_store_apart(cloth->x + at->plane, cloth->plane,
+                          ck_lanes3_add_scaled(flown, ck_lanes_all(CK_LINES_KEPT), pulled));
+    if (is_last) ck_lanes3_store_apart(cloth->before + at->plane, cloth->plane, moved);
     ck_lanes3_store(contact->x + at->tile, x);
     ck_lanes3_store(contact->from + at->tile, x);
     ck_lanes3_store(contact->way + at->tile, ck_lanes3_subtract_scaled(way, ck_lanes_all(0.5), gain));
@@ -90,9 +80,10 @@ void CK_LOOP(ck_line_fly)(const struct ck_LinedCloth *cloth, int row, bool is_la
 // What surfaces push is no pull of springs: where the flight ended is pushed as far.
 CK_INLINE void give(const struct ck_LinedCloth *cloth, const Group *at) {
     const ck_Lanes3 x = ck_lanes3_load(cloth->head.contact->x + at->tile),
-                    pushed = ck_lanes3_subtract(x, load(cloth, cloth->x, at->plane));
-    store(cloth, cloth->x, at->plane, x);
-    store(cloth, cloth->flown, at->plane, ck_lanes3_add(load(cloth, cloth->flown, at->plane), pushed));
+                    pushed = ck_lanes3_subtract(x, ck_lanes3_load_apart(cloth->x + at->plane, cloth->plane));
+    ck_lanes3_store_apart(cloth->x + at->plane, cloth->plane, x);
+    ck_lanes3_store_apart(cloth->flown + at->plane, cloth->plane,
+                          ck_lanes3_add(ck_lanes3_load_apart(cloth->flown + at->plane, cloth->plane), pushed));
 }
 
 ck_LinePress CK_LOOP(ck_line_press);
@@ -102,7 +93,8 @@ void CK_LOOP(ck_line_press)(const struct ck_LinedCloth *cloth) {
             Group groups[CK_STRIPE / CK_LANES];
             for (int i = 0; i < CK_STRIPE / CK_LANES; i++) {
                 groups[i] = group_at(cloth, row, column + (long)i * CK_LANES);
-                ck_lanes3_store(cloth->head.contact->x + groups[i].tile, load(cloth, cloth->x, groups[i].plane));
+                ck_lanes3_store(cloth->head.contact->x + groups[i].tile,
+                                ck_lanes3_load_apart(cloth->x + groups[i].plane, cloth->plane));
             }
             if (!cloth->loops->row_press(cloth->head.contact, (int)(groups[0].single / CK_STRIPE))) continue;
             for (int i = 0; i < CK_STRIPE / CK_LANES; i++) give(cloth, &groups[i]);

@@ -6,16 +6,6 @@
 
 enum { DAMPED = CK_LINE_DAMPED, REPEATED = CK_LINE_REPEATED, SLANTED = 4 };
 
-CK_INLINE ck_Lanes3 load(const ck_Real *from, long plane) {
-    return (ck_Lanes3){ck_lanes_load(from), ck_lanes_load(from + plane), ck_lanes_load(from + 2 * plane)};
-}
-
-CK_INLINE void store(ck_Real *to, long plane, ck_Lanes3 value) {
-    ck_lanes_store(to, value.x);
-    ck_lanes_store(to + plane, value.y);
-    ck_lanes_store(to + 2 * plane, value.z);
-}
-
 // As many lines as there are lanes, side by side: where the first one is in the first row, what is added to be in the
 // next, and the rows in which any of them is on the cloth.
 typedef struct Lines {
@@ -34,9 +24,10 @@ typedef struct Node {
 } Node;
 
 CK_INLINE Node node_at(const Lines *lines, int row, const int terms) {
-    Node node = {.x = load(lines->x + row * lines->step, lines->plane),
+    Node node = {.x = ck_lanes3_load_apart(lines->x + row * lines->step, lines->plane),
                  .weight = ck_lanes_load(lines->weight + row * lines->weight_step)};
-    if ((terms & DAMPED) || CK_IS_SINGLE) node.start = load(lines->start + row * lines->step, lines->plane);
+    if ((terms & DAMPED) || CK_IS_SINGLE)
+        node.start = ck_lanes3_load_apart(lines->start + row * lines->step, lines->plane);
     if (terms & SLANTED) node.there = ck_lanes_load(lines->there + (long)row * lines->slant);
     return node;
 }
@@ -89,7 +80,7 @@ CK_INLINE Pivot eliminate(const Lines *lines, const Node *a, const Node *b, cons
 }
 
 CK_INLINE void keep(ck_Real *scratch, const Pivot *pivot) {
-    store(scratch, CK_STRIPE, pivot->normal);
+    ck_lanes3_store_apart(scratch, CK_STRIPE, pivot->normal);
     ck_lanes_store(scratch + 3 * CK_STRIPE, pivot->longer * pivot->inverse);
     ck_lanes_store(scratch + 4 * CK_STRIPE, pivot->share);
 }
@@ -110,7 +101,7 @@ CK_INLINE void eliminate_lines(const Lines *lines, const int terms) {
 CK_INLINE void push(const Lines *lines, int row, ck_Lanes3 push) {
     ck_Real *x = lines->x + row * lines->step;
     const ck_Lanes weight = ck_lanes_load(lines->weight + row * lines->weight_step);
-    store(x, lines->plane, ck_lanes3_add_scaled(load(x, lines->plane), weight, push));
+    ck_lanes3_store_apart(x, lines->plane, ck_lanes3_add_scaled(ck_lanes3_load_apart(x, lines->plane), weight, push));
 }
 
 // From the last spring back: Δλ, and what it and the one after it push the particle between them by.
@@ -122,7 +113,7 @@ CK_INLINE void move_lines(const Lines *lines, const int terms) {
         const ck_Real *kept = lines->scratch + (long)CK_LINE_SCRATCH * row;
         change = ck_lanes_minus(ck_lanes_load(kept + 3 * CK_STRIPE), share, change);
         share = ck_lanes_load(kept + 4 * CK_STRIPE);
-        const ck_Lanes3 pull = ck_lanes3_scale(change, load(kept, CK_STRIPE));
+        const ck_Lanes3 pull = ck_lanes3_scale(change, ck_lanes3_load_apart(kept, CK_STRIPE));
         push(lines, row + 1, ck_lanes3_subtract(pull, after));
         after = pull;
         if (terms & REPEATED) {

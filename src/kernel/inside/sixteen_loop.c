@@ -92,17 +92,6 @@ void CK_LOOP(ck_cloth_press)(const ck_ProjectedCloth *cloth, int row) {
     }
 }
 
-CK_INLINE ck_Lanes3 load(const struct ck_LinedCloth *cloth, const ck_Real *planes, long at) {
-    return (ck_Lanes3){ck_lanes_load(planes + at), ck_lanes_load(planes + at + cloth->plane),
-                       ck_lanes_load(planes + at + 2 * cloth->plane)};
-}
-
-CK_INLINE void store(const struct ck_LinedCloth *cloth, ck_Real *planes, long at, ck_Lanes3 value) {
-    ck_lanes_store(planes + at, value.x);
-    ck_lanes_store(planes + at + cloth->plane, value.y);
-    ck_lanes_store(planes + at + 2 * cloth->plane, value.z);
-}
-
 static ck_Sixteen of_lines(const struct ck_LinedCloth *cloth, int row, long column) {
     const long at = row * cloth->stride + column;
     return (ck_Sixteen){.head = &cloth->head,
@@ -119,20 +108,21 @@ CK_INLINE unsigned fly_lines(const struct ck_LinedCloth *cloth, long at, bool is
     const ck_LaneMask is_free = ck_lanes_less(none, ck_lanes_load(cloth->weight + at));
     const ck_Lanes half = ck_lanes_all((ck_Real)0.5), keep = ck_lanes_all((ck_Real)cloth->rule.keep);
     const ck_Real push[] = {(ck_Real)cloth->push[0], (ck_Real)cloth->push[1], (ck_Real)cloth->push[2]};
-    const ck_Lanes3 now = load(cloth, cloth->x, at), start = load(cloth, cloth->start, at),
-                    pulled = ck_lanes3_subtract(now, load(cloth, cloth->flown, at)),
-                    moved = ck_lanes3_subtract(now, load(cloth, cloth->begun, at));
+    const ck_Lanes3 now = ck_lanes3_load_apart(cloth->x + at, cloth->plane),
+                    start = ck_lanes3_load_apart(cloth->start + at, cloth->plane),
+                    pulled = ck_lanes3_subtract(now, ck_lanes3_load_apart(cloth->flown + at, cloth->plane)),
+                    moved = ck_lanes3_subtract(now, ck_lanes3_load_apart(cloth->begun + at, cloth->plane));
     const ck_Lanes3 there = ck_lanes3_add(start, now);
     const ck_Lanes3 begins = ck_lanes3_subtract(now, ck_lanes3_subtract(there, start));
     const ck_Lanes3 way = ck_lanes3_add_scaled(ck_lanes3_all(push), ck_lanes_all((ck_Real)cloth->carried), moved);
     const ck_Lanes3 gain = ck_lanes3_subtract_scaled(way, keep, moved), flies = ck_lanes3_add(begins, way);
     const ck_Lanes3 x = ck_lanes3_add_scaled(flies, ck_lanes_all((ck_Real)CK_LINES_KEPT), pulled);
-    store(cloth, cloth->start, at, there);
-    store(cloth, cloth->begun, at, begins);
-    store(cloth, cloth->flown, at, ck_lanes3_choose(is_free, flies, begins));
-    store(cloth, cloth->x, at, ck_lanes3_choose(is_free, x, begins));
+    ck_lanes3_store_apart(cloth->start + at, cloth->plane, there);
+    ck_lanes3_store_apart(cloth->begun + at, cloth->plane, begins);
+    ck_lanes3_store_apart(cloth->flown + at, cloth->plane, ck_lanes3_choose(is_free, flies, begins));
+    ck_lanes3_store_apart(cloth->x + at, cloth->plane, ck_lanes3_choose(is_free, x, begins));
     ck_lanes3_store(moved_by, moved);
-    if (is_last) store(cloth, cloth->before, at, moved);
+    if (is_last) ck_lanes3_store_apart(cloth->before + at, cloth->plane, moved);
     return ck_lanes_meet(&cloth->head, there, ck_lanes3_subtract_scaled(way, half, gain), gain);
 }
 
@@ -186,9 +176,10 @@ void CK_LOOP(ck_line_press)(const struct ck_LinedCloth *cloth) {
             const long at = row * cloth->stride + column;
             unsigned bits = 0;
             for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES)
-                bits |= ck_lanes_meet(
-                    &cloth->head, ck_lanes3_add(load(cloth, cloth->start, at + lane), load(cloth, cloth->x, at + lane)),
-                    still, still);
+                bits |= ck_lanes_meet(&cloth->head,
+                                      ck_lanes3_add(ck_lanes3_load_apart(cloth->start + at + lane, cloth->plane),
+                                                    ck_lanes3_load_apart(cloth->x + at + lane, cloth->plane)),
+                                      still, still);
             if (may_press(&cloth->head, row * ck_line_places(cloth) + column, bits)) press_lines(cloth, row, column);
         }
 }

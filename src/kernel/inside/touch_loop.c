@@ -9,17 +9,6 @@ typedef struct Surface {
     ck_Lanes radius, curvature, friction, gap;
 } Surface;
 
-CK_INLINE ck_Lanes3 load(const double *from, const ck_Loose *loose, int at) {
-    return (ck_Lanes3){ck_lanes_load(from + at), ck_lanes_load(from + loose->stride + at),
-                       ck_lanes_load(from + 2 * loose->stride + at)};
-}
-
-CK_INLINE void store(double *to, const ck_Loose *loose, int at, ck_Lanes3 value) {
-    ck_lanes_store(to + at, value.x);
-    ck_lanes_store(to + loose->stride + at, value.y);
-    ck_lanes_store(to + 2 * loose->stride + at, value.z);
-}
-
 CK_INLINE ck_Lanes inverse_length(ck_Lanes squared) {
     ck_Lanes inverse;
     ck_lanes_inverse_root(&inverse, &squared, 1);
@@ -209,9 +198,9 @@ CK_INLINE void put_group(const ck_Touched *touch, const ck_Loose *loose, int at,
     const ck_LaneMask is_done = ck_lanes_less(end->alone, 0.5 * one); // what is no number is alone, too
     const ck_Lanes3 kept = ck_lanes3_subtract_scaled(end->v, half, end->change);
     ck_lanes_store(loose->is_alone + at, ck_lanes_choose(is_done, none, one));
-    store(loose->x, loose, at, ck_lanes3_choose(is_done, end->x, start->x));
-    store(loose->v, loose, at, ck_lanes3_choose(is_done, kept, start->v));
-    store(loose->predicted, loose, at, end->v);
+    ck_lanes3_store_apart(loose->x + at, loose->stride, ck_lanes3_choose(is_done, end->x, start->x));
+    ck_lanes3_store_apart(loose->v + at, loose->stride, ck_lanes3_choose(is_done, kept, start->v));
+    ck_lanes3_store_apart(loose->predicted + at, loose->stride, end->v);
     const ck_Lanes3 free = ck_lanes3_add_scaled(start->v, ck_lanes_all(touch->dt), start->a);
     const ck_Lanes3 gained = ck_lanes3_scale(ck_lanes_load(loose->mass + at), ck_lanes3_subtract(end->v, free));
     double *sum = sums + at % CK_STRIPE;
@@ -226,14 +215,15 @@ bool CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, doubl
     double sums[3 * CK_STRIPE] = {0};
     ck_Lanes alone = none;
     for (int at = 0; at < loose->count; at += CK_LANES) {
-        const Group start = {
-            .x = load(loose->x, loose, at), .v = load(loose->v, loose, at), .a = load(loose->a, loose, at)};
+        const Group start = {.x = ck_lanes3_load_apart(loose->x + at, loose->stride),
+                             .v = ck_lanes3_load_apart(loose->v + at, loose->stride),
+                             .a = ck_lanes3_load_apart(loose->a + at, loose->stride)};
         Group end = start;
         const Surface surface = find_surface(touch, start.x, ck_near_most(start.v, start.a, touch->dt), &end.alone);
         end.normal = surface.normal;
         if (!all_rest(touch, &surface, &end)) go(touch, &surface, &end);
         put_group(touch, loose, at, &start, &end, sums);
-        store(loose->normal, loose, at, end.normal);
+        ck_lanes3_store_apart(loose->normal + at, loose->stride, end.normal);
         ck_lanes_store(loose->curvature + at, surface.curvature);
         ck_lanes_store(loose->friction + at, surface.friction);
         // what fills the last vector up weighs nothing
@@ -252,10 +242,12 @@ void CK_LOOP(ck_touch_hold)(double dt, const ck_Loose *all) {
     for (int at = 0; at < loose->count; at += CK_LANES) {
         const Surface surface = {.curvature = ck_lanes_load(loose->curvature + at),
                                  .friction = ck_lanes_load(loose->friction + at)};
-        const ck_Lanes3 v = load(loose->v, loose, at);
-        const ck_Lanes3 change = filter(&surface, load(loose->normal, loose, at), load(loose->predicted, loose, at),
-                                        load(loose->a, loose, at), dt);
+        const ck_Lanes3 v = ck_lanes3_load_apart(loose->v + at, loose->stride);
+        const ck_Lanes3 change = filter(&surface, ck_lanes3_load_apart(loose->normal + at, loose->stride),
+                                        ck_lanes3_load_apart(loose->predicted + at, loose->stride),
+                                        ck_lanes3_load_apart(loose->a + at, loose->stride), dt);
         const ck_LaneMask is_alone = ck_lanes_less(none, ck_lanes_load(loose->is_alone + at));
-        store(loose->v, loose, at, ck_lanes3_choose(is_alone, v, ck_lanes3_add_scaled(v, half, change)));
+        ck_lanes3_store_apart(loose->v + at, loose->stride,
+                              ck_lanes3_choose(is_alone, v, ck_lanes3_add_scaled(v, half, change)));
     }
 }
