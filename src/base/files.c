@@ -122,20 +122,24 @@ void ck_path_sweep(const char *directory, const char *name) {
     if (folder) closedir(folder);
 }
 
+bool ck_file_is_named(int file, const char *path) {
+    struct stat held, named;
+    return !fstat(file, &held) && !stat(path, &named) && held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
 ck_Status ck_part_folder_open(ck_PartFolder *folder, const char *directory, const char *name, ck_Error *error) {
     *folder = (ck_PartFolder){.path = ck_path_part(directory, name), .lock = -1};
     if (!folder->path) return ck_fail(error, CK_NO_MEMORY, "%s/%s: out of memory", directory, name);
     ck_path_sweep(directory, name);
     for (int tries = 0; tries < 100; tries++) {
-        struct stat held, named;
         const int failed = ck_path_make(folder->path);
         if (failed) return ck_fail(error, CK_IO, "%s: %s", folder->path, strerror(failed));
         folder->lock = open(folder->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         // one that was swept before it was locked is nobody's
         const bool is_held = folder->lock >= 0 && !flock(folder->lock, LOCK_EX | LOCK_NB);
-        const bool is_swept = fstat(folder->lock, &held) || stat(folder->path, &named) || held.st_ino != named.st_ino;
         // where a file system has no locks nobody sweeps
-        if (!is_swept && (is_held || errno != EWOULDBLOCK)) return CK_OK;
+        const bool is_ours = is_held || errno != EWOULDBLOCK;
+        if (is_ours && ck_file_is_named(folder->lock, folder->path)) return CK_OK;
         if (folder->lock >= 0) close(folder->lock);
         folder->lock = -1;
     }
@@ -152,13 +156,10 @@ void ck_part_folder_close(ck_PartFolder *folder) {
 // A new file with its lock. Below 0: errno says why.
 static int open_locked(const char *path) {
     for (int tries = 0; tries < 100; tries++) {
-        struct stat held, named;
         const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (file < 0) return -1;
         // one that was swept before it was locked is nobody's
-        if (!flock(file, LOCK_EX | LOCK_NB) && !fstat(file, &held) && !stat(path, &named) &&
-            held.st_ino == named.st_ino)
-            return file;
+        if (!flock(file, LOCK_EX | LOCK_NB) && ck_file_is_named(file, path)) return file;
         close(file);
     }
     errno = EBUSY;

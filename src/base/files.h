@@ -77,6 +77,9 @@ bool ck_file_write(int file, const void *bytes, size_t size);
 // file system has no locks, nothing is locked.
 bool ck_file_lock(int file, bool shares);
 
+// Whether an open file is still what its path names: another process may have removed it between opening and locking.
+bool ck_file_is_named(int file, const char *path);
+
 // A file that appears whole or not at all: written beside its name under a lock, then renamed. What killed processes
 // have left of it is removed when it is begun again.
 typedef struct ck_WholeFile {

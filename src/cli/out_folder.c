@@ -27,19 +27,30 @@ static int count_missing(const char *path) {
     return missing;
 }
 
+// One that fails takes the folder that it made away, even while another waits for it.
+static ck_Status claim(ck_OutFolder *folder, const char *path, bool shares, ck_Error *error) {
+    do {
+        if (folder->file >= 0) close(folder->file);
+        folder->file = -1;
+        const int failed = ck_path_make(path);
+        if (failed) return ck_fail(error, CK_IO, "%s: %s", path, strerror(failed));
+        folder->file = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (folder->file < 0 && errno == ENOTDIR)
+            return ck_fail(error, CK_BAD_INPUT, "%s: is no folder; give another --out", path);
+        if (folder->file < 0 && errno != ENOENT) return ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
+        if (folder->file >= 0 && !ck_file_lock(folder->file, shares))
+            return ck_fail(error, CK_BAD_INPUT,
+                           "%s: another clothcheck is writing there; wait for it, or give another --out", path);
+    } while (folder->file < 0 || !ck_file_is_named(folder->file, path));
+    return CK_OK;
+}
+
 ck_Status ck_out_folder_claim(ck_OutFolder *folder, const char *path, bool shares, ck_Error *error) {
     *folder = (ck_OutFolder){.file = -1, .made = count_missing(path)};
-    const int failed = ck_path_make(path);
-    if (failed) return ck_fail(error, CK_IO, "%s: %s", path, strerror(failed));
-    folder->path = path;
-    folder->file = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder->file < 0 && errno == ENOTDIR)
-        return ck_fail(error, CK_BAD_INPUT, "%s: is no folder; give another --out", path);
-    if (folder->file < 0) return ck_fail(error, CK_IO, "%s: %s", path, strerror(errno));
-    if (ck_file_lock(folder->file, shares)) return CK_OK;
-    folder->made = 0;
-    return ck_fail(error, CK_BAD_INPUT, "%s: another clothcheck is writing there; wait for it, or give another --out",
-                   path);
+    const ck_Status status = claim(folder, path, shares, error);
+    if (folder->file >= 0) folder->path = path;
+    if (status) folder->made = 0;
+    return status;
 }
 
 void ck_out_folder_leave(ck_OutFolder *folder) {

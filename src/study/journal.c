@@ -140,6 +140,19 @@ static ck_Status ask(const ck_Journal *journal, const char *question, ck_Error *
     return append(journal, text, length, error);
 }
 
+// A study that ends while another waits for its journal takes that journal away: the next one begins its own.
+static ck_Status open_locked(ck_Journal *journal, ck_Error *error) {
+    for (;;) {
+        journal->file = open(journal->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+        if (journal->file < 0) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
+        if (!ck_file_lock(journal->file, false))
+            return ck_fail(error, CK_BAD_INPUT, "%s: another study is running there; give another --out",
+                           journal->path);
+        if (ck_file_is_named(journal->file, journal->path)) return CK_OK;
+        close(journal->file);
+    }
+}
+
 ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char *name, const char *question,
                           ck_ValueName name_at, void (*kept)(void *context, const char *key, const ck_JournalRow *row),
                           void *context, ck_Error *error) {
@@ -147,10 +160,8 @@ ck_Status ck_journal_open(ck_Journal *journal, const char *directory, const char
     *journal = (ck_Journal){.file = -1, .path = ck_path_join(directory, name), .name_at = name_at};
     if (failed) return ck_fail(error, CK_IO, "%s: %s", directory, strerror(failed));
     if (!journal->path) return ck_fail(error, CK_NO_MEMORY, "out of memory");
-    journal->file = open(journal->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (journal->file < 0) return ck_fail(error, CK_IO, "%s: %s", journal->path, strerror(errno));
-    if (!ck_file_lock(journal->file, false))
-        return ck_fail(error, CK_BAD_INPUT, "%s: another study is running there; give another --out", journal->path);
+    const ck_Status status = open_locked(journal, error);
+    if (status) return status;
     size_t length;
     char *text = read_lines(journal->file, &length);
     if (!text) return ck_fail(error, CK_NO_MEMORY, "out of memory");

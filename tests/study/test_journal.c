@@ -3,6 +3,8 @@
 
 #include "journal.h"
 
+#include <dirent.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static bool value_name(int index, char *name, size_t size) {
@@ -55,7 +57,57 @@ static void test_damaged_rows(void **state) {
     }
 }
 
+// True as soon as a process has a file of this path open.
+static bool has_open(pid_t process, const char *path) {
+    char folder[60], link[400], target[400];
+    snprintf(folder, sizeof folder, "/proc/%d/fd", (int)process);
+    DIR *files = opendir(folder);
+    bool found = false;
+    for (struct dirent *entry; files && !found && (entry = readdir(files));) {
+        snprintf(link, sizeof link, "%s/%s", folder, entry->d_name);
+        const ssize_t length = readlink(link, target, sizeof target - 1);
+        found = length == (ssize_t)strlen(path) && !memcmp(target, path, (size_t)length);
+    }
+    if (files) closedir(files);
+    return found;
+}
+
+// Opens the journal once it is told to, and adds a row. 0 where all went well.
+static int take_over(int told, const char *directory) {
+    ck_Journal journal;
+    char byte, kept[1000] = "";
+    if (read(told, &byte, 1) != 1) return 1;
+    if (ck_journal_open(&journal, directory, "study.journal", "other", value_name, keep, kept, NULL)) return 2;
+    if (ck_journal_add(&journal, "a", &(ck_JournalRow){.values = {0.5, 1}}, NULL)) return 3;
+    ck_journal_close(&journal, false);
+    return 0;
+}
+
+// A study that waits for a journal which its study takes away at its end has one of its own, which can be found again.
+static void test_taken_away(void **state) {
+    (void)state;
+    char directory[] = "/tmp/clothcheck-journal-XXXXXX", path[100], kept[1000] = "";
+    ck_Journal journal;
+    int told[2], status = 0;
+    assert_non_null(mkdtemp(directory));
+    snprintf(path, sizeof path, "%s/study.journal", directory);
+    assert_int_equal(pipe(told), 0);
+    const pid_t other = fork();
+    if (!other) _exit(take_over(told[0], directory));
+    assert_int_equal(ck_journal_open(&journal, directory, "study.journal", "one", value_name, keep, kept, NULL), CK_OK);
+    assert_int_equal(write(told[1], "x", 1), 1);
+    while (!has_open(other, path) && !waitpid(other, &status, WNOHANG)) usleep(500);
+    ck_journal_close(&journal, true);
+    assert_int_equal(waitpid(other, &status, 0), other);
+    assert_int_equal(status, 0);
+    assert_int_equal(ck_journal_open(&journal, directory, "study.journal", "other", value_name, keep, kept, NULL),
+                     CK_OK);
+    assert_string_equal(kept, "a 0 0.5; ");
+    ck_journal_close(&journal, true);
+    rmdir(directory);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_damaged_rows)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_damaged_rows), cmocka_unit_test(test_taken_away)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
