@@ -118,7 +118,6 @@ static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
             are_kept = false;
         }
         loose->count += part->count;
-        run_row(cloth, 0, row);
     }
     return are_kept;
 }
@@ -132,6 +131,7 @@ static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *a
 static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all, bool is_kicked) {
     const ck_ExplicitCloth cloth = *(const ck_ExplicitCloth *)body;
     const ck_Loose loose = *all;
+    const bool predicts = cloth.terms & (CK_ROW_DAMPED | CK_ROW_DRAGGED);
     for (int i = 0; i < loose.count; i++) {
         const long place = near[i].place;
         if (is_kicked) {
@@ -139,7 +139,7 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *al
             continue;
         }
         put_all(cloth.x, cloth.x_left, place, cloth.origin, loose.x + i, loose.stride);
-        ck_tile_put(cloth.predicted + place, loose.predicted + i, loose.stride);
+        if (predicts) ck_tile_put(cloth.predicted + place, loose.predicted + i, loose.stride);
     }
 }
 

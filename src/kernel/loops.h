@@ -39,20 +39,20 @@ typedef struct ck_Loose {
     long stride;              // a multiple of CK_STRIPE
     double *x, *v, *a;        // m, m/s, m/s²
     double *predicted, *mass; // m/s, kg
-    double *normal;           // of the surface that is touched, out, unit: set for touch_hold, and what follows
+    double *normal;           // of the surface that is touched, out, unit, or 0: set for touch_hold, and what follows
     double *curvature, *friction;
     double *is_alone; // not 0: no loop takes it
 } ck_Loose;
 
-// What they may touch; touch_slide takes none that moves.
+// What they may touch.
 typedef struct ck_Touched {
     const ck_NearSurface *surfaces;
     int count;
     double dt, slack; // s; m, closer than which is touching
 } ck_Touched;
 
-// One substep of those that rest or slide on one plane or ball and go on to, and half a kick; then the other half. True
-// where others are left alone. See touch_loop.c.
+// One substep of those that rest or slide on one plane or ball that stays and go on to, and of those that touch
+// nothing, and half a kick; then the other half. True where others are left alone. See touch_loop.c.
 typedef bool ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
 typedef void ck_TouchHold(double dt, const ck_Loose *loose);
 
@@ -72,7 +72,7 @@ typedef struct ck_Follower {
                   double *impulse);
 } ck_Follower;
 
-// Which particles of a row may come to touch one of so many surfaces within a substep; see near_loop.c.
+// The start of a substep for what of a row cannot touch one of so many surfaces within it; see near_loop.c.
 typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, int count);
 // The same over a chunk of a list of springs, from one of its two arrays of points, into the other where it advances;
 // see list_loop.h.

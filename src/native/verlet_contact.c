@@ -112,17 +112,13 @@ void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Expl
     const ck_Touched touch = {own->surfaces, model->collider_count, native->dt, contact->slack};
     if (!ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose)) weigh(own, model);
     contact->elapsed = native->dt;
-    bool any_alone = true;
-    if (contact->motion)
-        for (int i = 0; i < loose->count; i++) loose->is_alone[i] = 1;
-    else
-        any_alone = loops->touch_slide(&touch, loose, contact->impulse);
+    const bool any_alone = loops->touch_slide(&touch, loose, contact->impulse);
     if (any_alone) follow_alone(loose, contact);
     ck_explicit_put(body, own->near, loose, false);
     native->done++;
     ck_explicit_kick(body);
     ck_explicit_take(body, own->near, loose);
-    if (!contact->motion) loops->touch_hold(native->dt, loose);
+    loops->touch_hold(native->dt, loose);
     if (any_alone) kick_alone(loose, contact);
     ck_explicit_put(body, own->near, loose, true);
 }

@@ -293,8 +293,8 @@ static void run_quickly(void *state, long block, int wave) {
     (void)wave;
 }
 
-// A job whose layout is for one thread where it goes alone does not stay alone for that. A trial that lost its processor
-// for 20 ms is tried again after jobs of 1 s, which are millions.
+// A job whose layout is for one thread where it goes alone does not stay alone for that. A trial that lost its
+// processor for 20 ms is tried again after jobs of 1 s, which are millions.
 static void test_way_back(void **state) {
     (void)state;
     ck_Waves *waves;

@@ -62,16 +62,20 @@ CK_INLINE ck_Lanes ck_near_most(ck_Lanes3 v, ck_Lanes3 a, double substep) {
     return dt * ck_near_sum(v) + (ck_Real)0.5 * dt * dt * ck_near_sum(a);
 }
 
-// A bit for each that a surface may be in reach of. What is no number is near.
+// Those that a surface cannot be in reach of. What is no number is near.
 //   shape  a constant of the caller: what the surface is
-CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_LaneSurface *surface,
-                                const ck_NearShape shape) {
-    const ck_Lanes reach = ck_near_most(v, a, substep) + (surface->margin + surface->radius);
+CK_INLINE ck_LaneMask ck_near_far(ck_Lanes3 x, ck_Lanes most, const ck_LaneSurface *surface, const ck_NearShape shape) {
+    const ck_Lanes reach = most + (surface->margin + surface->radius);
     const ck_Lanes3 out =
         shape == CK_NEAR_SOLID ? ck_near_out(surface, x) : ck_lanes3_subtract(x, ck_lanes3_all(surface->point));
-    const ck_LaneMask is_far = shape == CK_NEAR_PLANE
-                                   ? ck_lanes_less(reach, ck_lanes3_dot(out, ck_lanes3_all(surface->normal)))
-                                   : ck_lanes_less(reach * reach, ck_lanes3_dot(out, out));
+    return shape == CK_NEAR_PLANE ? ck_lanes_less(reach, ck_lanes3_dot(out, ck_lanes3_all(surface->normal)))
+                                  : ck_lanes_less(reach * reach, ck_lanes3_dot(out, out));
+}
+
+// A bit for each that a surface may be in reach of.
+CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_LaneSurface *surface,
+                                const ck_NearShape shape) {
+    const ck_LaneMask is_far = ck_near_far(x, ck_near_most(v, a, substep), surface, shape);
     return ~ck_lanes_bits(is_far) & ((1u << CK_LANES) - 1);
 }
 

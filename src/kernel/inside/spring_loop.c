@@ -158,15 +158,16 @@ CK_INLINE void pass(const struct ck_ExplicitCloth *cloth, int row, bool advances
     }
 }
 
-// x ← x + v·dt + a·dt²/2;  v* = v + a·dt;  v ← v + a·dt/2
+// x ← x + v·dt + a·dt²/2;  v* = v + a·dt, where a pass reads it;  v ← v + a·dt/2
 ck_ExplicitStart CK_LOOP(ck_explicit_start);
 void CK_LOOP(ck_explicit_start)(const struct ck_ExplicitCloth *cloth, int row) {
     const ck_Lanes dt = ck_lanes_all(cloth->dt), half = ck_lanes_all((ck_Real)0.5 * cloth->dt);
     const long end = ck_rows_place(&cloth->rows, row + 1, 0).tile;
+    const bool predicts = cloth->terms & (DAMPED | DRAGGED);
     for (long i = ck_rows_place(&cloth->rows, row, 0).tile; i < end; i += CK_LANES) {
         const ck_Lanes a = ck_lanes_load(cloth->a + i), v = ck_lanes_plus(ck_lanes_load(cloth->v + i), half, a);
         ck_lanes_store(cloth->x + i, ck_lanes_plus(ck_lanes_load(cloth->x + i), dt, v));
-        ck_lanes_store(cloth->predicted + i, ck_lanes_plus(v, half, a));
+        if (predicts) ck_lanes_store(cloth->predicted + i, ck_lanes_plus(v, half, a));
         ck_lanes_store(cloth->v + i, v);
     }
 }

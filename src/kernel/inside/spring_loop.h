@@ -6,12 +6,8 @@
 #include "lane_surface.h"
 #include "rows.h"
 
-// A bit for each place of a vector.
-#ifdef CK_SINGLE
+// A bit for each place of a vector. No char, stores to which might be to whatever there is.
 typedef uint16_t ck_Marks;
-#else
-typedef uint8_t ck_Marks;
-#endif
 
 typedef struct ck_ExplicitCloth {
     ck_Explicit base; // see explicit_kind.h

@@ -1,6 +1,7 @@
 // Compiled once for each kind of vectors; see loops.h. The formulas are those of native/contact.c, for what is most of
 // contact: particles that touch one plane or ball that stays, with nothing else in reach, and rest or slide on it from
-// start to end of a substep. All others are left to be followed one by one.
+// start to end of a substep; and those that touch nothing and come to nothing. All others are left to be followed one
+// by one.
 #include "near.h"
 
 // The surface that each lane touches; of a plane the curvature is 0.
@@ -22,7 +23,8 @@ CK_INLINE Surface choose(ck_LaneMask mask, const Surface *yes, const Surface *no
         ck_lanes_choose(mask, yes->friction, no->friction), ck_lanes_choose(mask, yes->gap, no->gap)};
 }
 
-// The one that is touched at x. Into alone: not 0 where none or several are within a way, or it is another shape.
+// The one that is touched at x. Into alone: not 0 where none or several are within a way, or it moves or is another
+// shape.
 CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes way, ck_Lanes *alone) {
     const ck_Lanes none = {0}, one = ck_lanes_all(1), slack = ck_lanes_all(touch->slack);
     Surface found = {.gap = one};
@@ -43,12 +45,32 @@ CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes wa
         }
         const ck_LaneMask is_near = ck_lanes_less(each.gap, way + surface->margin);
         const ck_LaneMask is_touched = ck_lanes_less(each.gap, slack);
-        in_reach += ck_lanes_choose(is_near, one, none);
+        in_reach += ck_lanes_choose(is_near, ck_lanes_all(surface->moves ? 2 : 1), none);
         touched += ck_lanes_choose(is_touched, surface->axis_count ? none : one, none);
         found = choose(is_touched, &each, &found);
     }
     *alone = (in_reach - 1) * (in_reach - 1) + (touched - 1) * (touched - 1);
     return found;
+}
+
+// 1 for each that touches nothing in all of the substep. A surface lies behind the plane through its next point, across
+// the way to there: what does not come to that plane comes to nothing.
+CK_INLINE ck_Lanes find_flying(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a) {
+    const ck_Lanes none = {0}, dt = ck_lanes_all(touch->dt);
+    const ck_Lanes rounding = 1e-9 * ck_near_most(v, a, touch->dt);
+    ck_Lanes flying = ck_lanes_all(1);
+    for (int k = 0; k < touch->count; k++) {
+        const ck_NearSurface *surface = &touch->surfaces[k];
+        ck_Lanes3 normal = ck_lanes3_all(surface->normal);
+        const ck_Lanes3 out = ck_near_out(surface, x);
+        const ck_Lanes gap = surface->is_plane ? ck_lanes3_dot(out, normal)
+                                               : ck_near_round_gap(out, ck_lanes_all(surface->radius), &normal);
+        const ck_Lanes way = dt * ck_lanes3_dot(v, normal), gain = 0.5 * dt * dt * ck_lanes3_dot(a, normal);
+        const ck_Lanes inwards = ck_lanes_choose(ck_lanes_less(way, none), way, none) +
+                                 ck_lanes_choose(ck_lanes_less(gain, none), gain, none);
+        flying = ck_lanes_choose(ck_lanes_less(rounding + surface->margin, gap + inwards), flying, none);
+    }
+    return flying;
 }
 
 // Faster than rounding, of what friction, m/s², takes within a substep; squared, which needs no root.
@@ -153,59 +175,130 @@ CK_INLINE ck_Lanes3 press_in(const Surface *surface, ck_Lanes3 v, ck_Lanes3 a, d
     return left;
 }
 
-// Some particles, a lane each.
+// Some particles, a lane each. Where a store crosses a line of the cache, and then a page, it costs as much as a root.
 typedef struct Group {
-    ck_Lanes3 x, v, a; // where they are, at the start and then at the end
-    ck_Lanes3 change;  // what acceleration is left at the end
-    ck_Lanes3 normal;  // of the surface there
-    ck_Lanes alone;    // not 0: not done here
+    _Alignas(CK_VECTOR_BYTES) ck_Lanes3 x0; // where they start
+    ck_Lanes3 v0, a;
+    ck_Lanes3 x, v;   // where they are, and at last the end
+    ck_Lanes3 change; // what acceleration is left at the end
+    ck_Lanes3 normal; // of the surface there
+    ck_Lanes alone;   // not 0: not done here
+    Surface surface;  // at the start
+    Held held;
+    ck_LaneMask goes;
+    bool rests; // all of them
 } Group;
 
 // True where all lie still and are held: they stay to the bit. Deeper than rounding they do not lie still.
-CK_INLINE bool all_rest(const ck_Touched *touch, const Surface *surface, const Group *group) {
+CK_INLINE bool all_rest(const ck_Touched *touch, const Group *group) {
     const ck_Lanes none = {0}, one = ck_lanes_all(1);
-    if (ck_lanes_any_beyond(ck_lanes3_dot(group->v, group->v), 0)) return false;
-    const Held held = hold(surface, surface->normal, group->v, group->a, touch->dt);
+    if (ck_lanes_any_beyond(ck_lanes3_dot(group->v0, group->v0), 0)) return false;
+    const Surface *surface = &group->surface;
+    const Held held = hold(surface, surface->normal, group->v0, group->a, touch->dt);
     const ck_Lanes deep = ck_lanes_choose(ck_lanes_less(surface->gap, ck_lanes_all(-1e-3 * touch->slack)), one, none);
     const ck_Lanes loose = ck_lanes_choose(ck_lanes_less(none, held.press), none, one);
     return !ck_lanes_any_beyond(group->alone + deep + loose + ck_lanes_choose(held.holds, none, one), 0);
 }
 
-CK_INLINE void go(const ck_Touched *touch, const Surface *surface, Group *group) {
+CK_INLINE void meet(const ck_Touched *touch, const ck_Loose *loose, int at, Group *group) {
+    const ck_Lanes none = {0};
+    group->x = group->x0 = ck_lanes3_load_apart(loose->x + at, loose->stride);
+    group->v = group->v0 = ck_lanes3_load_apart(loose->v + at, loose->stride);
+    group->a = ck_lanes3_load_apart(loose->a + at, loose->stride);
+    group->change = (ck_Lanes3){none, none, none};
+    group->alone = none;
+    group->surface = find_surface(touch, group->x0, ck_near_most(group->v0, group->a, touch->dt), &group->alone);
+    group->normal = group->surface.normal;
+    group->rests = all_rest(touch, group);
+}
+
+CK_INLINE ck_Lanes depth_of(const Surface *surface) {
+    const ck_Lanes none = {0};
+    return ck_lanes_choose(ck_lanes_less(surface->gap, none), surface->gap, none);
+}
+
+CK_INLINE void press(const ck_Touched *touch, Group *group) {
+    const Surface *surface = &group->surface;
+    group->x = ck_lanes3_subtract_scaled(group->x0, depth_of(surface), surface->normal);
+    group->v = press_in(surface, group->v0, group->a, touch->dt, &group->alone);
+}
+
+CK_INLINE void rub(const ck_Touched *touch, Group *group) {
     const ck_Lanes none = {0}, one = ck_lanes_all(1);
-    const double dt = touch->dt;
-    const Group start = *group;
-    const ck_Lanes depth = ck_lanes_choose(ck_lanes_less(surface->gap, none), surface->gap, none);
-    group->x = ck_lanes3_subtract_scaled(start.x, depth, surface->normal);
-    group->v = press_in(surface, start.v, start.a, dt, &group->alone);
-    const Held held = hold(surface, surface->normal, group->v, start.a, dt);
+    const Surface *surface = &group->surface;
+    const Held held = group->held = hold(surface, surface->normal, group->v, group->a, touch->dt);
     group->alone += ck_lanes_choose(ck_lanes_less(none, held.press), none, one);
-    group->alone += ends_within(surface->friction * held.press, group->v, &held, dt);
-    const ck_Lanes moves = ck_lanes_choose(held.holds, ck_lanes3_dot(start.v, start.v), one) +
-                           ck_lanes_choose(ck_lanes_less(depth, ck_lanes_all(-1e-3 * touch->slack)), one, none);
-    const ck_LaneMask goes = ck_lanes_less(none, moves);
-    slide(surface, &group->x, &group->v, start.a, held.left, held.press, dt, &group->normal);
-    group->x = ck_lanes3_choose(goes, group->x, start.x);
-    group->v = ck_lanes3_choose(goes, group->v, start.v);
-    group->change = filter(surface, group->normal, group->v, start.a, dt);
+    group->alone += ends_within(surface->friction * held.press, group->v, &held, touch->dt);
+    const ck_LaneMask is_deep = ck_lanes_less(depth_of(surface), ck_lanes_all(-1e-3 * touch->slack));
+    const ck_Lanes moves =
+        ck_lanes_choose(held.holds, ck_lanes3_dot(group->v0, group->v0), one) + ck_lanes_choose(is_deep, one, none);
+    group->goes = ck_lanes_less(none, moves);
+}
+
+CK_INLINE void go(const ck_Touched *touch, Group *group) {
+    const Held *held = &group->held;
+    slide(&group->surface, &group->x, &group->v, group->a, held->left, held->press, touch->dt, &group->normal);
+    group->x = ck_lanes3_choose(group->goes, group->x, group->x0);
+    group->v = ck_lanes3_choose(group->goes, group->v, group->v0);
+}
+
+CK_INLINE void end(const ck_Touched *touch, Group *group) {
+    group->change = filter(&group->surface, group->normal, group->v, group->a, touch->dt);
 }
 
 // Their impulses are added up lane by lane of a stripe, so that vectors of any width give the same sums.
 //   sums  [3*CK_STRIPE] N·s
-CK_INLINE void put_group(const ck_Touched *touch, const ck_Loose *loose, int at, const Group *start, const Group *end,
-                         double *sums) {
+CK_INLINE void put_group(const ck_Touched *touch, const ck_Loose *loose, int at, const Group *group, double *sums) {
     const ck_Lanes none = {0}, one = ck_lanes_all(1), half = ck_lanes_all(0.5 * touch->dt);
-    const ck_LaneMask is_done = ck_lanes_less(end->alone, 0.5 * one); // what is no number is alone, too
-    const ck_Lanes3 kept = ck_lanes3_subtract_scaled(end->v, half, end->change);
+    const ck_LaneMask is_done = ck_lanes_less(group->alone, 0.5 * one); // what is no number is alone, too
+    const ck_Lanes3 kept = ck_lanes3_subtract_scaled(group->v, half, group->change);
     ck_lanes_store(loose->is_alone + at, ck_lanes_choose(is_done, none, one));
-    ck_lanes3_store_apart(loose->x + at, loose->stride, ck_lanes3_choose(is_done, end->x, start->x));
-    ck_lanes3_store_apart(loose->v + at, loose->stride, ck_lanes3_choose(is_done, kept, start->v));
-    ck_lanes3_store_apart(loose->predicted + at, loose->stride, end->v);
-    const ck_Lanes3 free = ck_lanes3_add_scaled(start->v, ck_lanes_all(touch->dt), start->a);
-    const ck_Lanes3 gained = ck_lanes3_scale(ck_lanes_load(loose->mass + at), ck_lanes3_subtract(end->v, free));
+    ck_lanes3_store_apart(loose->x + at, loose->stride, ck_lanes3_choose(is_done, group->x, group->x0));
+    ck_lanes3_store_apart(loose->v + at, loose->stride, ck_lanes3_choose(is_done, kept, group->v0));
+    ck_lanes3_store_apart(loose->predicted + at, loose->stride, group->v);
+    ck_lanes3_store_apart(loose->normal + at, loose->stride, group->normal);
+    ck_lanes_store(loose->curvature + at, group->surface.curvature);
+    ck_lanes_store(loose->friction + at, group->surface.friction);
+    const ck_Lanes3 free = ck_lanes3_add_scaled(group->v0, ck_lanes_all(touch->dt), group->a);
+    const ck_Lanes3 gained = ck_lanes3_scale(ck_lanes_load(loose->mass + at), ck_lanes3_subtract(group->v, free));
     double *sum = sums + at % CK_STRIPE;
     ck_lanes3_store(
         sum, ck_lanes3_add(ck_lanes3_load(sum), ck_lanes3_choose(is_done, gained, (ck_Lanes3){none, none, none})));
+}
+
+// Of those left alone, the ones that fly by the acceleration that they have. True where others are left.
+static __attribute__((noinline)) bool fly_alone(const ck_Touched *touch, const ck_Loose *loose) {
+    const ck_Lanes none = {0}, dt = ck_lanes_all(touch->dt);
+    ck_Lanes left = none;
+    for (int at = 0; at < loose->count; at += CK_LANES) {
+        const ck_Lanes alone = ck_lanes_load(loose->is_alone + at);
+        if (!ck_lanes_any_beyond(alone, 0)) continue;
+        const ck_Lanes3 x = ck_lanes3_load_apart(loose->x + at, loose->stride),
+                        v = ck_lanes3_load_apart(loose->v + at, loose->stride),
+                        a = ck_lanes3_load_apart(loose->a + at, loose->stride),
+                        predicted = ck_lanes3_load_apart(loose->predicted + at, loose->stride);
+        const ck_Lanes flying = alone * find_flying(touch, x, v, a);
+        const ck_LaneMask flies = ck_lanes_less(none, flying);
+        const ck_Lanes3 half = ck_lanes3_add_scaled(v, 0.5 * dt, a), faster = ck_lanes3_add_scaled(v, dt, a);
+        ck_lanes_store(loose->is_alone + at, alone - flying);
+        ck_lanes3_store_apart(loose->x + at, loose->stride,
+                              ck_lanes3_choose(flies, ck_lanes3_add_scaled(x, dt, half), x));
+        ck_lanes3_store_apart(loose->v + at, loose->stride, ck_lanes3_choose(flies, half, v));
+        ck_lanes3_store_apart(loose->predicted + at, loose->stride, ck_lanes3_choose(flies, faster, predicted));
+        // what fills the last vector up weighs nothing
+        left += ck_lanes_choose(ck_lanes_less(none, ck_lanes_load(loose->mass + at)), alone - flying, none);
+    }
+    return ck_lanes_any_beyond(left, 0);
+}
+
+// A particle's way through a substep is one long chain of roots: several groups go through each part of it together, or
+// a processor would not look far enough ahead to fill the wait for one's with another's.
+typedef void Part(const ck_Touched *touch, Group *group);
+enum { TOGETHER = 4 };
+
+CK_INLINE void pass(const ck_Touched *touch, Group *groups, int count, Part *const part) {
+    for (int i = 0; i < count; i++)
+        if (!groups[i].rests) part(touch, &groups[i]);
 }
 
 ck_TouchSlide CK_LOOP(ck_touch_slide);
@@ -214,25 +307,27 @@ bool CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, doubl
     const ck_Lanes none = {0};
     double sums[3 * CK_STRIPE] = {0};
     ck_Lanes alone = none;
-    for (int at = 0; at < loose->count; at += CK_LANES) {
-        const Group start = {.x = ck_lanes3_load_apart(loose->x + at, loose->stride),
-                             .v = ck_lanes3_load_apart(loose->v + at, loose->stride),
-                             .a = ck_lanes3_load_apart(loose->a + at, loose->stride)};
-        Group end = start;
-        const Surface surface = find_surface(touch, start.x, ck_near_most(start.v, start.a, touch->dt), &end.alone);
-        end.normal = surface.normal;
-        if (!all_rest(touch, &surface, &end)) go(touch, &surface, &end);
-        put_group(touch, loose, at, &start, &end, sums);
-        ck_lanes3_store_apart(loose->normal + at, loose->stride, end.normal);
-        ck_lanes_store(loose->curvature + at, surface.curvature);
-        ck_lanes_store(loose->friction + at, surface.friction);
-        // what fills the last vector up weighs nothing
-        alone += ck_lanes_choose(ck_lanes_less(none, ck_lanes_load(loose->mass + at)), end.alone, none);
+    for (int first = 0; first < loose->count; first += TOGETHER * CK_LANES) {
+        Group groups[TOGETHER];
+        int count = 0;
+        for (int at = first; count < TOGETHER && at < loose->count; at += CK_LANES)
+            meet(touch, loose, at, &groups[count++]);
+        pass(touch, groups, count, press);
+        pass(touch, groups, count, rub);
+        pass(touch, groups, count, go);
+        pass(touch, groups, count, end);
+        for (int i = 0; i < count; i++) {
+            const int at = first + i * CK_LANES;
+            put_group(touch, loose, at, &groups[i], sums);
+            // what fills the last vector up weighs nothing
+            alone += ck_lanes_choose(ck_lanes_less(none, ck_lanes_load(loose->mass + at)), groups[i].alone, none);
+        }
     }
     for (int axis = 0; axis < 3; axis++)
         for (int lane = 0; lane < CK_STRIPE; lane++) impulse[axis] += sums[axis * CK_STRIPE + lane];
     // what is no number is alone, too
-    return ck_lanes_bits(ck_lanes_less(alone, 0.5 * ck_lanes_all(1))) != (1u << CK_LANES) - 1;
+    const bool any_alone = ck_lanes_bits(ck_lanes_less(alone, 0.5 * ck_lanes_all(1))) != (1u << CK_LANES) - 1;
+    return any_alone && fly_alone(touch, loose);
 }
 
 ck_TouchHold CK_LOOP(ck_touch_hold);
