@@ -65,20 +65,17 @@ const pictureWatch = new IntersectionObserver((entries) => {
 	for (const { isIntersecting, target } of entries) {
 		if (!isIntersecting) continue;
 		pictureWatch.unobserve(target);
-		fileBytes(target.dataset.scene + ".replay").then((bytes) => {
-			const replay = parseReplay(bytes);
-			paintPicture(target, replay);
-			if (replay.about) target.nextElementSibling.textContent = replay.about;
-		});
+		fileBytes(target.dataset.scene + ".replay").then((bytes) => paintPicture(target, parseReplay(bytes)));
 	}
 });
 
-// Nothing for a scene without a replay.
+// Nothing for a scene without a replay. It takes its room at once: a row that grew later would slip away under a click.
 function scenePicture(name) {
-	if (!document.getElementById(`file:${name}.replay`)) return [];
+	const file = document.getElementById(`file:${name}.replay`);
+	if (!file) return [];
 	const canvas = element("canvas", { className: "picture", width: pictureSize[0], height: pictureSize[1] });
 	canvas.dataset.scene = name;
 	canvas.setAttribute("aria-hidden", "true");
 	pictureWatch.observe(canvas);
-	return [canvas, element("small", { className: "sentence" })];
+	return [canvas, element("small", { className: "sentence", textContent: file.dataset.about })];
 }

@@ -101,7 +101,9 @@ static bool read_header(ck_Replay *replay, const char *scene) {
         return false;
     for (int i = 0; i < replay->path_count; i++)
         if (!read_path(&line, replay->bytes)) return false;
-    if (read_text(&line, "about ") && !(line = strchr(line, '\n'))) return false;
+    replay->about = read_text(&line, "about ") ? line : "";
+    if (*replay->about && !(line = strchr(line, '\n'))) return false;
+    replay->about_length = *replay->about ? (size_t)(line - replay->about) : 0;
     line += *line == '\n';
     int bodies = 0;
     while (!read_text(&line, "data\n")) {

@@ -33,6 +33,8 @@
 typedef struct ck_Replay {
     char *bytes; // of the file; owned
     size_t size, header_size;
+    const char *about; // the scene's sentence, in bytes
+    size_t about_length;
     int particle_count, spring_count, triangle_count, frame_count, path_count;
 } ck_Replay;
 

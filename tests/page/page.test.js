@@ -210,6 +210,22 @@ test("each scene of the summary has its picture and its sentence", async () => {
 	await page.evaluate(() => scrollTo(0, 0));
 });
 
+// A row that grew under the mouse would lose its click.
+test("a row of the summary has its height before its picture is drawn", async () => {
+	const [drawn, before] = await page.evaluate(() => {
+		const select = document.getElementById("summary-metric");
+		select.dispatchEvent(new Event("change"));
+		const rows = [...document.querySelectorAll("#summary-table tbody tr")];
+		return [document.querySelectorAll("#summary-table .picture[data-drawn]").length, rows.map((row) => row.getBoundingClientRect().height)];
+	});
+	assert.equal(drawn, 0);
+	await page.locator("#summary-table").scrollIntoViewIfNeeded();
+	await page.waitForFunction(() => [...document.querySelectorAll("#summary-table .picture")].every((picture) => picture.dataset.drawn));
+	const after = await page.locator("#summary-table tbody tr").evaluateAll((rows) => rows.map((row) => row.getBoundingClientRect().height));
+	assert.deepEqual(after, before);
+	await page.evaluate(() => scrollTo(0, 0));
+});
+
 test("the summary is of whichever metric is asked for", async () => {
 	await page.selectOption("#summary-metric", "stretch_max");
 	const rows = csvRows("metrics.csv").filter((row) => row.metric === "stretch_max" && row.error !== "nan");

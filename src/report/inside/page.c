@@ -40,6 +40,15 @@ static void write_text(FILE *file, const char *text) {
     fputc('"', file);
 }
 
+static void write_html(FILE *file, const char *text) {
+    for (; *text; text++) {
+        if (strchr("&<>\"", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+    }
+}
+
 // Compresses into *out. Errors: CK_NO_MEMORY. Free *out in any case.
 static ck_Status compress_bytes(char **out, size_t *out_size, const char *bytes, size_t size, ck_Error *error) {
     z_stream stream = {0};
@@ -59,8 +68,9 @@ static ck_Status compress_bytes(char **out, size_t *out_size, const char *bytes,
     return result == Z_STREAM_END ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
 }
 
-// Adds bytes under a name that scripts of the page find them by.
-static ck_Status pack(const Page *page, const char *name, const char *bytes, size_t size, ck_Error *error) {
+// Adds bytes under a name that scripts of the page find them by, and a text about them that is there without unpacking.
+static ck_Status pack(const Page *page, const char *name, const char *about, const char *bytes, size_t size,
+                      ck_Error *error) {
     if (ck_child_interrupted) return ck_fail(error, CK_IO, "interrupted; no report was written");
     char *small;
     size_t small_size;
@@ -69,7 +79,9 @@ static ck_Status pack(const Page *page, const char *name, const char *bytes, siz
     if (!status && !text) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) {
         base64_encode_raw(text, small_size, (const uint8_t *)small);
-        fprintf(page->file, "<script type=\"application/gzip\" id=\"file:%s\">", name);
+        fprintf(page->file, "<script type=\"application/gzip\" id=\"file:%s\" data-about=\"", name);
+        write_html(page->file, about);
+        fprintf(page->file, "\">");
         fwrite(text, 1, BASE64_ENCODE_RAW_LENGTH(small_size), page->file);
         fprintf(page->file, "</script>\n");
     }
@@ -83,7 +95,7 @@ static ck_Status pack_file(const Page *page, const char *directory, const char *
     size_t size;
     ck_Status status = path ? CK_OK : ck_fail(error, CK_NO_MEMORY, "out of memory");
     if (!status) status = ck_file_read(&bytes, &size, path, error);
-    if (!status) status = pack(page, file, bytes, size, error);
+    if (!status) status = pack(page, file, "", bytes, size, error);
     free(bytes);
     free(path);
     return status;
@@ -103,8 +115,11 @@ static ck_Status pack_replay(const Page *page, const char *scene, ck_Error *erro
     size_t size;
     ck_Status status = ck_replay_read(&replay, page->data->directory, scene, error);
     if (!status) status = ck_replay_pack(&packed, &size, &replay, error);
+    char *about = status ? NULL : strndup(replay.about, replay.about_length);
+    if (!status && !about) status = ck_fail(error, CK_NO_MEMORY, "out of memory");
     snprintf(name, sizeof name, "%s.replay", scene);
-    if (!status) status = pack(page, name, packed, size, error);
+    if (!status) status = pack(page, name, about, packed, size, error);
+    free(about);
     free(packed);
     ck_replay_free(&replay);
     return status;
@@ -240,15 +255,6 @@ static void choose_nonce(Page *page) {
     }
     sha256_digest(&hash, sizeof digest, digest);
     for (size_t i = 0; i < sizeof digest; i++) snprintf(page->nonce + 2 * i, 3, "%02x", digest[i]);
-}
-
-static void write_html(FILE *file, const char *text) {
-    for (; *text; text++) {
-        if (strchr("&<>\"", *text))
-            fprintf(file, "&#%d;", *text);
-        else
-            fputc(*text, file);
-    }
 }
 
 static void link_charts(const Page *page, int scene) {
