@@ -218,6 +218,38 @@ static void test_contact(void **state) {
     }
 }
 
+// What lies still beside what slides, in one vector or in another: the same bits in all of the paths.
+static void test_resting(void **state) {
+    (void)state;
+    fixture_skip_sanitized();
+    static const char *const scenes[] = {
+        "cloth: {rows: 19, columns: 21, spacing: 0.02, mass: 0.399, down: [0, 0, 1]}\nsprings: {stiffness: 200, "
+        "damping: 0.05, bend: 40}\ndrag: 0.5\nnoise: {amplitude: 2.0e-5, seed: 163}\nvelocity: [0, -1, 0]\n"
+        "colliders: [{sphere: {center: [0.21, -0.105, 0.22], radius: 0.1, friction: 1.9, restitution: 0.2}}]\n",
+        "cloth: {rows: 16, columns: 12, spacing: 0.05, mass: 0.2, down: [0, 0, 1]}\nsprings: {stiffness: 200, shear: "
+        "60, damping: 0.02}\nnoise: {amplitude: 5.0e-5, seed: 2}\ncolliders: [{sphere: {center: [0.25, -0.25, 0.35], "
+        "radius: 0.2, friction: 1.5}}, {plane: {point: [0, -0.3, 0], normal: [0, 1, 0], friction: 0.4}}]\n"};
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        char text[800];
+        Fixture fixture;
+        ck_Trajectory first = {0};
+        snprintf(text, sizeof text, "name: rest\n%sgravity: [0, -9.81, 0]\ntime: {duration: 0.8, fps: 60}\n",
+                 scenes[i]);
+        fixture_load(&fixture, text);
+        for (int kind = 0; ck_loops_at(kind) && ck_loops_at(kind)->fuses; kind++) {
+            ck_Trajectory path;
+            run_whole(&path, &fixture.model, ck_loops_at(kind)->lanes, false);
+            for (int frame = 0; kind && frame <= fixture.model.frame_count; frame++)
+                assert_memory_equal(ck_trajectory_position(&first, frame), ck_trajectory_position(&path, frame),
+                                    3 * sizeof(double) * (size_t)fixture.model.particle_count);
+            if (kind) ck_trajectory_free(&path);
+            if (!kind) first = path;
+        }
+        ck_trajectory_free(&first);
+        fixture_free(&fixture);
+    }
+}
+
 // A whole run of an engine, in positions: the same bits with any number of threads.
 static void compare_threads(const ck_Model *model, const ck_Engine *engine, uint32_t substeps, uint32_t threads) {
     size_t bytes = 3 * sizeof(double) * (size_t)model->particle_count;
@@ -360,9 +392,10 @@ static void test_fit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),  cmocka_unit_test(test_contact),
-        cmocka_unit_test(test_threads),  cmocka_unit_test(test_depth), cmocka_unit_test(test_way_back),
-        cmocka_unit_test(test_vectors),  cmocka_unit_test(test_root),  cmocka_unit_test(test_fit)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_explicit), cmocka_unit_test(test_list),
+                                       cmocka_unit_test(test_contact),  cmocka_unit_test(test_resting),
+                                       cmocka_unit_test(test_threads),  cmocka_unit_test(test_depth),
+                                       cmocka_unit_test(test_way_back), cmocka_unit_test(test_vectors),
+                                       cmocka_unit_test(test_root),     cmocka_unit_test(test_fit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,11 +23,20 @@ static inline int fuzz_file(char path[40], const uint8_t *data, size_t size) {
     return file;
 }
 
-// The input as a file of that name, in a folder of this process's own, where it stays from then on.
+// A folder of this process's own, made once; tests/fuzz/run clears it away.
+static inline const char *fuzz_folder(void) {
+    static char folder[4096];
+    const char *place = getenv("TMPDIR");
+    if (*folder) return folder;
+    snprintf(folder, sizeof folder, "%s/clothcheck-fuzz-XXXXXX", place ? place : "/tmp");
+    if (!mkdtemp(folder)) abort();
+    return folder;
+}
+
+// The input as a file of that name, in that folder, where the process stays from then on.
 static inline void fuzz_write(const char *name, const uint8_t *data, size_t size) {
-    static char folder[] = "/tmp/clothcheck-fuzz-XXXXXX";
     static int is_there;
-    if (!is_there && (!mkdtemp(folder) || chdir(folder) || mkdir("replays", 0777))) abort();
+    if (!is_there && (chdir(fuzz_folder()) || mkdir("replays", 0777))) abort();
     is_there = 1;
     FILE *file = fopen(name, "wb");
     if (!file || fwrite(data, 1, size, file) != size || fclose(file)) abort();

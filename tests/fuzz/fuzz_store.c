@@ -4,19 +4,14 @@
 #include "files.h"
 #include "store.h"
 
-static char folder[] = "/tmp/clothcheck-fuzz-XXXXXX";
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static bool is_made;
-    char path[100];
+    char path[5000];
     ck_Store store;
     ck_StoreFile file = {-1, -1};
-    if (!is_made && !mkdtemp(folder)) abort();
-    is_made = true;
-    snprintf(path, sizeof path, "%s/a.cases", folder);
+    snprintf(path, sizeof path, "%s/a.cases", fuzz_folder());
     FILE *out = fopen(path, "wb");
     if (!out || fwrite(data, 1, size, out) != size || fclose(out)) abort();
-    if (ck_store_open(&store, folder, NULL)) abort();
+    if (ck_store_open(&store, fuzz_folder(), NULL)) abort();
     for (size_t i = 0; i < store.capacity; i++) {
         const ck_StoreEntry *entry = &store.entries[i];
         if (!entry->bytes) continue;

@@ -321,6 +321,44 @@ static void test_capstan(void **state) {
     assert_near("slides", slides_by(1.05), 6.6e-3, 2e-3);
 }
 
+// The least gap of all particles in all frames of a path, m.
+static double least_gap(const ck_Model *model, const ck_Trajectory *path) {
+    double least = INFINITY, normal[3];
+    for (int frame = 0; frame < path->frame_count; frame++)
+        for (int i = 0; i < model->particle_count; i++)
+            least =
+                fmin(least, ck_collider_gap(&model->colliders[0], ck_trajectory_position(path, frame) + 3 * i, normal));
+    return least;
+}
+
+// Cloths that skim a tilted, sharp box, some spacings' billionths above its face and falling by more than that a
+// substep: none is found behind the face, however uncertain a way out so short is. What rounding leaves of places of
+// 1 m is 1e-16 m each, and some steps add some of these.
+static void test_skimming(void **state) {
+    (void)state;
+    ck_Random random = ck_random_seed(7);
+    for (int round = 0; round < 60; round++) {
+        const double tilt = 1.4 * ck_random_unit(&random) - 0.7, turn = 1.5 * ck_random_unit(&random);
+        const double gap = 0.02e-9 * (3 + 17 * ck_random_unit(&random)), dt = 1e-3, c = cos(tilt), s = sin(tilt);
+        const double fall = gap / dt * (1.1 + 2 * ck_random_unit(&random)), speed = 30 * 0.7;
+        char text[1000];
+        Fixture fixture;
+        ck_Trajectory path;
+        snprintf(text, sizeof text,
+                 "name: skim\ncloth: {rows: 8, columns: 17, spacing: 0.02, mass: 0.136, origin: [%.17g, %.17g, -0.2], "
+                 "across: [%.17g, %.17g, 0], down: [0, 0, 1]}\nsprings: {stiffness: 500, shear: 100}\nvelocity: "
+                 "[%.17g, %.17g, %g]\ncolliders: [{box: {center: [%.17g, %.17g, 0], size: [6, 1, 6], along: [%.17g, "
+                 "%.17g, %.17g], up: [%.17g, %.17g, 0]}}]\ntime: {duration: 0.003, fps: 1000}\n",
+                 -gap * s - 0.2 * c, gap * c - 0.2 * s, c, s, speed * c + fall * s, speed * s - fall * c, speed,
+                 0.5 * s, -0.5 * c, cos(turn) * c, cos(turn) * s, sin(turn), -s, c);
+        fixture_load(&fixture, text);
+        fixture_run(&path, &fixture.model, ck_engine_find("native-verlet"), &(ck_Settings){.substeps = 1}, NULL);
+        assert_true(least_gap(&fixture.model, &path) > -1e-15);
+        ck_trajectory_free(&path);
+        fixture_free(&fixture);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_gap_is_the_distance),
                                        cmocka_unit_test(test_normal_of_a_face),
@@ -328,6 +366,7 @@ int main(void) {
                                        cmocka_unit_test(test_hits),
                                        cmocka_unit_test(test_table_edge),
                                        cmocka_unit_test(test_pulley),
-                                       cmocka_unit_test(test_capstan)};
+                                       cmocka_unit_test(test_capstan),
+                                       cmocka_unit_test(test_skimming)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

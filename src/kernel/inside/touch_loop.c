@@ -54,21 +54,24 @@ CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes wa
 }
 
 // 1 for each that touches nothing in all of the substep. A surface lies behind the plane through its next point, across
-// the way to there: what does not come to that plane comes to nothing.
+// the way to there: what does not come to that plane comes to nothing. Of an edge the plane's direction is known to a
+// place's rounding over the way to there.
 CK_INLINE ck_Lanes find_flying(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a) {
-    const ck_Lanes none = {0}, dt = ck_lanes_all(touch->dt);
-    const ck_Lanes rounding = 1e-9 * ck_near_most(v, a, touch->dt);
+    const ck_Lanes none = {0}, dt = ck_lanes_all(touch->dt), most = ck_near_most(v, a, touch->dt);
     ck_Lanes flying = ck_lanes_all(1);
     for (int k = 0; k < touch->count; k++) {
         const ck_NearSurface *surface = &touch->surfaces[k];
+        const ck_Lanes radius = ck_lanes_all(surface->radius);
+        const ck_Lanes place = ck_near_sum(ck_lanes3_subtract(x, ck_lanes3_all(surface->point)));
         ck_Lanes3 normal = ck_lanes3_all(surface->normal);
         const ck_Lanes3 out = ck_near_out(surface, x);
-        const ck_Lanes gap = surface->is_plane ? ck_lanes3_dot(out, normal)
-                                               : ck_near_round_gap(out, ck_lanes_all(surface->radius), &normal);
+        const ck_Lanes gap = surface->is_plane ? ck_lanes3_dot(out, normal) : ck_near_round_gap(out, radius, &normal);
         const ck_Lanes way = dt * ck_lanes3_dot(v, normal), gain = 0.5 * dt * dt * ck_lanes3_dot(a, normal);
         const ck_Lanes inwards = ck_lanes_choose(ck_lanes_less(way, none), way, none) +
                                  ck_lanes_choose(ck_lanes_less(gain, none), gain, none);
-        flying = ck_lanes_choose(ck_lanes_less(rounding + surface->margin, gap + inwards), flying, none);
+        ck_Lanes spare = gap + inwards - 1e-9 * most - surface->margin;
+        if (!surface->is_plane) spare = spare * (gap + radius) - 1e-15 * most * place;
+        flying = ck_lanes_choose(ck_lanes_less(none, spare), flying, none);
     }
     return flying;
 }
@@ -240,6 +243,7 @@ CK_INLINE void go(const ck_Touched *touch, Group *group) {
     slide(&group->surface, &group->x, &group->v, group->a, held->left, held->press, touch->dt, &group->normal);
     group->x = ck_lanes3_choose(group->goes, group->x, group->x0);
     group->v = ck_lanes3_choose(group->goes, group->v, group->v0);
+    group->normal = ck_lanes3_choose(group->goes, group->normal, group->surface.normal);
 }
 
 CK_INLINE void end(const ck_Touched *touch, Group *group) {
@@ -291,14 +295,19 @@ static __attribute__((noinline)) bool fly_alone(const ck_Touched *touch, const c
     return ck_lanes_any_beyond(left, 0);
 }
 
-// A particle's way through a substep is one long chain of roots: several groups go through each part of it together, or
-// a processor would not look far enough ahead to fill the wait for one's with another's.
-typedef void Part(const ck_Touched *touch, Group *group);
 enum { TOGETHER = 4 };
 
-CK_INLINE void pass(const ck_Touched *touch, Group *groups, int count, Part *const part) {
+// A particle's way through a substep is one long chain of roots: groups go through each part of it together, or a
+// processor would not look far enough ahead to fill the wait for one's with another's.
+CK_INLINE void pass(const ck_Touched *touch, Group *groups, int count) {
     for (int i = 0; i < count; i++)
-        if (!groups[i].rests) part(touch, &groups[i]);
+        if (!groups[i].rests) press(touch, &groups[i]);
+    for (int i = 0; i < count; i++)
+        if (!groups[i].rests) rub(touch, &groups[i]);
+    for (int i = 0; i < count; i++)
+        if (!groups[i].rests) go(touch, &groups[i]);
+    for (int i = 0; i < count; i++)
+        if (!groups[i].rests) end(touch, &groups[i]);
 }
 
 ck_TouchSlide CK_LOOP(ck_touch_slide);
@@ -312,10 +321,7 @@ bool CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, doubl
         int count = 0;
         for (int at = first; count < TOGETHER && at < loose->count; at += CK_LANES)
             meet(touch, loose, at, &groups[count++]);
-        pass(touch, groups, count, press);
-        pass(touch, groups, count, rub);
-        pass(touch, groups, count, go);
-        pass(touch, groups, count, end);
+        pass(touch, groups, count);
         for (int i = 0; i < count; i++) {
             const int at = first + i * CK_LANES;
             put_group(touch, loose, at, &groups[i], sums);
