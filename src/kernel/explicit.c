@@ -40,20 +40,42 @@ void ck_explicit_step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
     body->kind->step(body, substeps, waves);
 }
 
-void ck_explicit_kick(ck_Explicit *body) {
+void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+    body->kind->drift(body, surfaces, count, loose);
+}
+
+void ck_explicit_kick(ck_Explicit *body, ck_Loose *loose) {
     body->kind->kick(body);
+    body->kind->take(body, loose, loose->count);
 }
 
-bool ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
-    return body->kind->drift(body, surfaces, count, near, loose);
+void ck_explicit_turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+    const int before = loose->count;
+    body->kind->turn(body, surfaces, count, loose);
+    body->kind->take(body, loose, before);
 }
 
-void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {
-    body->kind->take(body, near, loose);
+void ck_explicit_put(const ck_Explicit *body, const ck_Loose *loose, bool is_kicked) {
+    body->kind->put(body, loose, is_kicked);
 }
 
-void ck_explicit_put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked) {
-    body->kind->put(body, near, loose, is_kicked);
+static void copy(const ck_Loose *loose, double *vectors, int to, int from) {
+    for (int axis = 0; axis < 3; axis++) vectors[axis * loose->stride + to] = vectors[axis * loose->stride + from];
+}
+
+// The last one takes the place of one that leaves.
+void ck_explicit_leave(ck_Explicit *body, ck_Loose *loose) {
+    for (int i = loose->count - 1; i >= 0; i--) {
+        if (!(loose->is_alone[i] < 0)) continue;
+        const int last = --loose->count;
+        body->kind->leave(body, loose, i);
+        double *vectors[] = {loose->x, loose->v, loose->a, loose->predicted, loose->normal};
+        double *numbers[] = {loose->mass, loose->curvature, loose->friction, loose->is_alone};
+        for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++) copy(loose, vectors[k], i, last);
+        for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) numbers[k][i] = numbers[k][last];
+        loose->place[i] = loose->place[last];
+        loose->strays += i < last;
+    }
 }
 
 void ck_explicit_read(const ck_Explicit *body, double *position, double *velocity) {

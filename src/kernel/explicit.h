@@ -38,26 +38,23 @@ void ck_explicit_destroy(ck_Explicit *body);
 // loops.h says.
 void ck_explicit_step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
 
-// A free particle, and where its layout has it.
-typedef struct ck_Near {
-    int particle;
-    long place;
-} ck_Near;
-
 // A substep in two halves, for who moves some particles otherwise in between: x and v*, and half of v; then a' and the
 // other half. Together they are ck_explicit_step with one substep.
 //
-// Those that may come to touch a surface within the substep, [n] at most, by how far each can get, are noted in near
-// and their state at its start in loose, which says how many. Both are those of the last substep, as ck_explicit_put
-// left them; true where near is as it was. Cost: half a pass, and some ns for each that was not there before.
-bool ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
-void ck_explicit_kick(ck_Explicit *body);
+// Free particles that may come to touch a surface within the substep, by how far each can get, are loose, [n] at most:
+// their state at its start is there. They stay so until they leave; what is new stands behind them, and is alone. After
+// a kick their accelerations are there. Cost: half a pass; and some ns for each that is new.
+void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose);
+void ck_explicit_kick(ck_Explicit *body, ck_Loose *loose);
+// A kick and the drift of the next substep, so that the second finds in the cache what the first has left there. What
+// has been loose has not had the other half of v; what is new has.
+void ck_explicit_turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose);
 
-// After a kick: their accelerations.
-void ck_explicit_take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose);
+// What is made of them: before a kick place and predicted velocity, after the last one their velocity.
+void ck_explicit_put(const ck_Explicit *body, const ck_Loose *loose, bool is_kicked);
 
-// What is made of them: before a kick place and predicted velocity, after it their velocity.
-void ck_explicit_put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
+// Before a kick, after that: those that are alone below 0 are loose no longer.
+void ck_explicit_leave(ck_Explicit *body, ck_Loose *loose);
 
 // The accelerations at the end of the last call, as the layout has them, with 0 for what is not free; [count] m/s².
 const double *ck_explicit_acceleration(const ck_Explicit *body, size_t *count);

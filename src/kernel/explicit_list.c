@@ -49,50 +49,62 @@ CK_INLINE void put_point(double *to, const double *from, long stride) {
     for (int axis = 0; axis < 3; axis++) to[axis] = from[axis * stride];
 }
 
-// Those of a chunk that are marked near, and free; returns how many there are by then.
-static int take_chunk(const ck_ExplicitList *list, int chunk, ck_Near *near, const ck_Loose *loose) {
-    int found = loose->count;
+// What is new near a surface of a chunk, behind what is loose.
+static void take_chunk(const ck_ExplicitList *list, int chunk, ck_Loose *loose) {
     for (int group = list->springs.chunk_start[chunk]; group < list->springs.chunk_start[chunk + 1]; group++)
-        for (unsigned bits = list->near[group]; bits; bits &= bits - 1) {
+        for (unsigned bits = list->found[group]; bits; bits &= bits - 1) {
             const long place = CK_STRIPE * (long)group + __builtin_ctz(bits);
-            if (!(list->gain[place] > 0)) continue;
-            take_point(loose->x + found, loose->stride, list->x[list->now] + CK_POINT * place);
-            ck_tile_take(loose->v + found, loose->stride, list->v + ck_tile_of(place));
-            ck_tile_take(loose->a + found, loose->stride, list->a + ck_tile_of(place));
-            near[found++] = (ck_Near){list->springs.particle[place], place};
+            const int i = loose->count++;
+            take_point(loose->x + i, loose->stride, list->x[list->now] + CK_POINT * place);
+            ck_tile_take(loose->v + i, loose->stride, list->v + ck_tile_of(place));
+            ck_tile_take(loose->a + i, loose->stride, list->a + ck_tile_of(place));
+            loose->mass[i] = list->mass[place];
+            loose->is_alone[i] = 1;
+            loose->place[i] = place;
         }
-    return found;
 }
 
-static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
+static void begin(ck_ExplicitList *list, ck_Loose *loose) {
+    loose->count = loose->strays = 0;
+    memset(list->near, 0, (size_t)(list->springs.places / CK_STRIPE));
+}
+
+static void start_chunk(ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+    if (list->loops->near_chunk(list, chunk, surfaces, count)) take_chunk(list, chunk, loose);
+    run_chunk(list, 0, chunk);
+}
+
+static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
-    bool are_kept = true;
-    loose->count = 0;
-    for (int chunk = 0; chunk < list->springs.chunks; chunk++) {
-        const int *start = list->springs.chunk_start + chunk;
-        ck_NearPart *part = &list->parts[chunk];
-        list->loops->near_chunk(list, chunk, surfaces, count, list->near);
-        if (!ck_near_is_kept(part, loose->count, list->near + start[0], list->near_before + start[0],
-                             (size_t)(start[1] - start[0]))) {
-            *part = (ck_NearPart){loose->count, take_chunk(list, chunk, near, loose) - loose->count};
-            are_kept = false;
-        }
-        loose->count += part->count;
-        run_chunk(list, 0, chunk);
+    const bool is_new = list->is_placed || ck_loose_is_strewn(loose);
+    if (is_new) begin(list, loose);
+    const int before = loose->count;
+    for (int chunk = 0; chunk < list->springs.chunks; chunk++) start_chunk(list, chunk, surfaces, count, loose);
+    loose->strays += is_new ? 0 : loose->count - before;
+    list->is_placed = false;
+}
+
+// A chunk's springs lead to the one before, which so starts when both are done.
+static void turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    const int before = loose->count, chunks = list->springs.chunks;
+    list->substeps = 1;
+    for (int chunk = 0; chunk <= chunks; chunk++) {
+        if (chunk < chunks) run_chunk(list, 1, chunk);
+        if (chunk > 0) start_chunk(list, chunk - 1, surfaces, count, loose);
     }
-    return are_kept;
+    loose->strays += loose->count - before;
 }
 
-static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose) {
+static void take(const ck_Explicit *body, const ck_Loose *loose, int count) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
-    for (int i = 0; i < loose->count; i++)
-        ck_tile_take(loose->a + i, loose->stride, list->a + ck_tile_of(near[i].place));
+    for (int i = 0; i < count; i++) ck_tile_take(loose->a + i, loose->stride, list->a + ck_tile_of(loose->place[i]));
 }
 
-static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked) {
+static void put(const ck_Explicit *body, const ck_Loose *loose, bool is_kicked) {
     const ck_ExplicitList *list = (const ck_ExplicitList *)body;
     for (int i = 0; i < loose->count; i++) {
-        const long place = near[i].place;
+        const long place = loose->place[i];
         if (is_kicked) {
             ck_tile_put(list->v + ck_tile_of(place), loose->v + i, loose->stride);
             continue;
@@ -100,6 +112,13 @@ static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *lo
         put_point(list->x[list->now] + CK_POINT * place, loose->x + i, loose->stride);
         put_point(list->predicted[list->now] + CK_POINT * place, loose->predicted + i, loose->stride);
     }
+}
+
+static void leave(ck_Explicit *body, const ck_Loose *loose, int which) {
+    ck_ExplicitList *list = (ck_ExplicitList *)body;
+    const long place = loose->place[which];
+    ck_tile_put(list->v + ck_tile_of(place), loose->v + which, loose->stride);
+    list->near[place / CK_STRIPE] &= (uint8_t) ~(1u << place % CK_STRIPE);
 }
 
 // From [3*n] to points, and back.
@@ -148,7 +167,6 @@ static void destroy(ck_Explicit *body) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
     ck_spring_list_free(&list->springs);
     free(list->state);
-    free(list->parts);
     free(list);
 }
 
@@ -179,12 +197,13 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     for (int i = 0; i < model->particle_count; i++) {
         const int at = list->springs.place[i];
         double load[3];
+        list->mass[at] = model->mass[i];
         list->resistance[at] = model->drag * model->mass[i];
         ck_model_field(model, i, load);
         for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
         ck_tile_put(list->load + ck_tile_of(at), load, 1);
     }
-    for (int chunk = 0; chunk < list->springs.chunks; chunk++) list->parts[chunk].first = -1;
+    list->is_placed = true;
     pace(body, setup);
     scatter_points(list, list->x[list->now], setup->position);
     scatter_points(list, list->predicted[list->now], setup->velocity);
@@ -195,10 +214,9 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
 
 static bool allocate(ck_ExplicitList *list) {
     const size_t places = (size_t)list->springs.places, points = CK_POINT * places + APART, tiles = 3 * places + APART;
-    const size_t bytes = (4 * points + 3 * tiles + 2 * places) * sizeof(double) + 2 * places / CK_STRIPE;
-    list->parts = malloc(sizeof *list->parts * (size_t)list->springs.chunks);
+    const size_t bytes = (4 * points + 3 * tiles + 3 * places) * sizeof(double) + 2 * places / CK_STRIPE;
     list->state = aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!list->parts || !list->state) return false;
+    if (!list->state) return false;
     memset(list->state, 0, bytes);
     for (int i = 0; i < 2; i++) {
         list->x[i] = list->state + 2 * i * points;
@@ -209,8 +227,9 @@ static bool allocate(ck_ExplicitList *list) {
     list->load = list->a + tiles;
     list->gain = list->load + tiles;
     list->resistance = list->gain + places;
-    list->near = (uint8_t *)(list->resistance + places);
-    list->near_before = list->near + places / CK_STRIPE;
+    list->mass = list->resistance + places;
+    list->near = (uint8_t *)(list->mass + places);
+    list->found = list->near + places / CK_STRIPE;
     return true;
 }
 
@@ -231,5 +250,18 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     return CK_OK;
 }
 
-const ck_ExplicitKind ck_explicit_list = {create, place, pace, acceleration, destroy,   step,
-                                          drift,  kick,  take, put,          read_state};
+const ck_ExplicitKind ck_explicit_list = {
+    .create = create,
+    .place = place,
+    .pace = pace,
+    .acceleration = acceleration,
+    .destroy = destroy,
+    .step = step,
+    .drift = drift,
+    .turn = turn,
+    .kick = kick,
+    .take = take,
+    .put = put,
+    .leave = leave,
+    .read = read_state,
+};

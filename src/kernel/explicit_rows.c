@@ -62,32 +62,27 @@ static void put_all(ck_Real *tiles, ck_Real *left, long place, const double orig
     }
 }
 
-// Those of a row that are marked near, and free; returns how many there are by then.
-static int take_row(const ck_ExplicitCloth *shared, int row, ck_Near *near, const ck_Loose *all) {
+// What is new near a surface of a row, behind what is loose.
+static void take_row(const ck_ExplicitCloth *shared, int row, ck_Loose *all) {
     const ck_ExplicitCloth cloth = *shared;
     const ck_Loose loose = *all;
-    const ck_Place first = ck_rows_place(&cloth.rows, row, 0);
-    int found = loose.count;
+    int count = loose.count;
     for (int i = 0; i < cloth.rows.span; i++)
-        for (unsigned bits = cloth.near[i]; bits; bits &= bits - 1) {
-            const int lane = __builtin_ctz(bits), column = lane * cloth.rows.span + i;
-            const long place = first.tile + 3 * CK_STRIPE * i + lane;
-            if (column >= cloth.rows.columns || !(cloth.gain[first.single + CK_STRIPE * i + lane] > 0)) continue;
-            take_all(cloth.x, cloth.x_left, place, cloth.origin, loose.x + found, loose.stride);
-            take_all(cloth.v, cloth.v_left, place, none, loose.v + found, loose.stride);
-            ck_tile_take(loose.a + found, loose.stride, cloth.a + place);
-            near[found++] = (ck_Near){row * cloth.rows.columns + column, place};
+        for (unsigned bits = cloth.found[i]; bits; bits &= bits - 1, count++) {
+            const long place = ck_rows_place(&cloth.rows, row, i).tile + __builtin_ctz(bits);
+            take_all(cloth.x, cloth.x_left, place, cloth.origin, loose.x + count, loose.stride);
+            take_all(cloth.v, cloth.v_left, place, none, loose.v + count, loose.stride);
+            ck_tile_take(loose.a + count, loose.stride, cloth.a + place);
+            loose.mass[count] = cloth.mass;
+            loose.is_alone[count] = 1;
+            loose.place[count] = place;
         }
-    return found;
+    all->count = count;
 }
 
-// Of what is near no longer nothing is left.
-static void forget_left(const ck_ExplicitCloth *cloth, int row) {
-    const ck_Place first = ck_rows_place(&cloth->rows, row, 0);
-    const size_t bytes = 3 * sizeof(ck_Real) * (size_t)cloth->rows.stride;
-    if (!cloth->left) return;
-    memset(cloth->x_left + first.tile, 0, bytes);
-    memset(cloth->v_left + first.tile, 0, bytes);
+// Of what is not loose no digits are left.
+static void forget_left(const ck_ExplicitCloth *cloth) {
+    if (cloth->left) memset(cloth->left, 0, 6 * sizeof *cloth->left * cloth->rows.size);
 }
 
 static void see(ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int count) {
@@ -101,39 +96,58 @@ static void see(ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int cou
 #endif
 }
 
-// Row by row, so that what one step has read the next finds in the cache.
-static bool drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose) {
-    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    const size_t span = (size_t)cloth->rows.span;
-    bool are_kept = true;
-    loose->count = 0;
-    see(cloth, surfaces, count);
-    for (int row = 0; row < cloth->rows.rows; row++) {
-        ck_NearPart *part = &cloth->parts[row];
-        cloth->loops->near_row(cloth, row, count);
-        if (!ck_near_is_kept(part, loose->count, cloth->near, cloth->near_before + span * (size_t)row,
-                             span * sizeof *cloth->near)) {
-            *part = (ck_NearPart){loose->count, take_row(cloth, row, near, loose) - loose->count};
-            forget_left(cloth, row);
-            are_kept = false;
-        }
-        loose->count += part->count;
-    }
-    return are_kept;
+static void begin(ck_ExplicitCloth *cloth, ck_Loose *loose) {
+    loose->count = loose->strays = 0;
+    memset(cloth->near, 0, sizeof *cloth->near * (size_t)(cloth->rows.rows * cloth->rows.span));
 }
 
-static void take(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all) {
+static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    const bool is_new = cloth->is_placed || ck_loose_is_strewn(loose);
+    see(cloth, surfaces, count);
+    if (is_new) begin(cloth, loose);
+    const int before = loose->count;
+    // row by row, so that what one step has read the next finds in the cache
+    for (int row = 0; row < cloth->rows.rows; row++)
+        if (cloth->loops->near_row(cloth, row, count)) take_row(cloth, row, loose);
+    loose->strays += is_new ? 0 : loose->count - before;
+    if (is_new) forget_left(cloth);
+    cloth->is_placed = false;
+}
+
+static void turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    const int before = loose->count;
+    (void)surfaces; // are where they were
+    cloth->substeps = 1;
+    for (int row = 0; row < cloth->rows.rows; row++) {
+        run_row(cloth, 1, row);
+        if (cloth->loops->near_row(cloth, row, count)) take_row(cloth, row, loose);
+    }
+    loose->strays += loose->count - before;
+}
+
+static void take(const ck_Explicit *body, const ck_Loose *all, int count) {
     const ck_Real *a = ((const ck_ExplicitCloth *)body)->a;
     const ck_Loose loose = *all;
-    for (int i = 0; i < loose.count; i++) ck_tile_take(loose.a + i, loose.stride, a + near[i].place);
+    for (int i = 0; i < count; i++) ck_tile_take(loose.a + i, loose.stride, a + loose.place[i]);
 }
 
-static void put(const ck_Explicit *body, const ck_Near *near, const ck_Loose *all, bool is_kicked) {
+static void leave(ck_Explicit *body, const ck_Loose *loose, int which) {
+    ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
+    const long place = loose->place[which], stripe = place / (3 * CK_STRIPE);
+    ck_tile_put(cloth->v + place, loose->v + which, loose->stride);
+    cloth->near[stripe] &= (ck_Marks) ~(1u << place % (3 * CK_STRIPE));
+    for (int axis = 0; axis < 3 && cloth->left; axis++)
+        cloth->x_left[place + axis * CK_STRIPE] = cloth->v_left[place + axis * CK_STRIPE] = 0;
+}
+
+static void put(const ck_Explicit *body, const ck_Loose *all, bool is_kicked) {
     const ck_ExplicitCloth cloth = *(const ck_ExplicitCloth *)body;
     const ck_Loose loose = *all;
     const bool predicts = cloth.terms & (CK_ROW_DAMPED | CK_ROW_DRAGGED);
     for (int i = 0; i < loose.count; i++) {
-        const long place = near[i].place;
+        const long place = loose.place[i];
         if (is_kicked) {
             put_all(cloth.v, cloth.v_left, place, none, loose.v + i, loose.stride);
             continue;
@@ -165,8 +179,7 @@ static void destroy(ck_Explicit *body) {
     free(cloth->state);
     free(cloth->pairs);
     free(cloth->near);
-    free(cloth->near_before);
-    free(cloth->parts);
+    free(cloth->found);
     free(cloth->seen);
     free(cloth->left);
     free(cloth);
@@ -201,7 +214,7 @@ static void tell_left(const ck_ExplicitCloth *cloth, const ck_ExplicitSetup *set
 static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     if (CK_IS_SINGLE) memcpy(cloth->origin, setup->position, sizeof cloth->origin);
-    for (int row = 0; row < cloth->rows.rows; row++) cloth->parts[row].first = -1;
+    cloth->is_placed = true;
     ck_rows_load(&cloth->rows, cloth->x, setup->position, cloth->origin);
     ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity, none);
     pace(body, setup);
@@ -215,9 +228,8 @@ static bool allocate(ck_ExplicitCloth *cloth, int colliders) {
     const size_t span = (size_t)cloth->rows.span, rows = (size_t)cloth->rows.rows;
     cloth->state = ck_rows_allocate(&cloth->rows, 13);
     cloth->pairs = ck_rows_allocate(&row, 2);
-    cloth->near = malloc(sizeof *cloth->near * span);
-    cloth->near_before = malloc(sizeof *cloth->near_before * span * rows);
-    cloth->parts = malloc(sizeof *cloth->parts * rows);
+    cloth->near = malloc(sizeof *cloth->near * span * rows);
+    cloth->found = malloc(sizeof *cloth->found * span);
     if (CK_IS_SINGLE && colliders) {
         cloth->seen = calloc((size_t)colliders, sizeof *cloth->seen);
         cloth->left = ck_rows_allocate(&cloth->rows, 6);
@@ -225,7 +237,7 @@ static bool allocate(ck_ExplicitCloth *cloth, int colliders) {
         cloth->x_left = cloth->left;
         cloth->v_left = cloth->left + 3 * cloth->rows.size;
     }
-    return cloth->state && cloth->pairs && cloth->near && cloth->near_before && cloth->parts;
+    return cloth->state && cloth->pairs && cloth->near && cloth->found;
 }
 
 static void place_arrays(ck_ExplicitCloth *cloth) {
@@ -260,6 +272,7 @@ static ck_Status create(ck_Explicit **out, const ck_ExplicitSetup *setup, ck_Err
     ck_model_field(model, 0, field);
     for (int axis = 0; axis < 3; axis++) cloth->weight[axis] = (ck_Real)(model->mass[0] * field[axis]);
     cloth->size = model->size;
+    cloth->mass = model->mass[0];
     place(&cloth->base, setup);
     *out = &cloth->base;
     return CK_OK;
@@ -272,9 +285,11 @@ const ck_ExplicitKind ck_explicit_rows = {
     .destroy = destroy,
     .step = step,
     .drift = drift,
+    .turn = turn,
     .kick = kick,
     .take = take,
     .put = put,
+    .leave = leave,
     .read = read_state,
 #ifndef CK_SINGLE
     .acceleration = acceleration,

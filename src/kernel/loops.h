@@ -35,13 +35,14 @@ typedef struct ck_NearSurface {
 
 // Particles that are followed by themselves, coordinate by coordinate: [3*stride], and [stride] of what is one number.
 typedef struct ck_Loose {
-    int count;
+    int count, strays;        // strays: stand behind where their place would be, so that the cache finds them badly
+    long *place;              // where the body has it
     long stride;              // a multiple of CK_STRIPE
     double *x, *v, *a;        // m, m/s, m/s²
     double *predicted, *mass; // m/s, kg
     double *normal;           // of the surface that is touched, out, unit, or 0: set for touch_hold, and what follows
     double *curvature, *friction;
-    double *is_alone; // not 0: no loop takes it
+    double *is_alone; // above 0: no loop takes it; below: none has to, as nothing was in its reach
 } ck_Loose;
 
 // What they may touch.
@@ -52,8 +53,10 @@ typedef struct ck_Touched {
 } ck_Touched;
 
 // One substep of those that rest or slide on one plane or ball that stays and go on to, and of those that touch
-// nothing, and half a kick; then the other half. True where others are left alone. See touch_loop.c.
-typedef bool ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
+// nothing, and half a kick; then the other half. Says whether there are others, and any that may leave. See
+// touch_loop.c.
+enum { CK_SOME_ALONE = 1, CK_SOME_LEAVE = 2 };
+typedef unsigned ck_TouchSlide(const ck_Touched *touch, const ck_Loose *loose, double *impulse);
 typedef void ck_TouchHold(double dt, const ck_Loose *loose);
 
 // Between several surfaces, one pushes into another: so many rounds of all of them at most.
@@ -72,14 +75,14 @@ typedef struct ck_Follower {
                   double *impulse);
 } ck_Follower;
 
-// The start of a substep for what of a row cannot touch one of so many surfaces within it; see near_loop.c.
-typedef void ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, int count);
+// The start of a substep for what of a row cannot touch one of so many surfaces within it. True where others come to be
+// near. See near_loop.c.
+typedef bool ck_NearRow(const struct ck_ExplicitCloth *cloth, int row, int count);
 // The same over a chunk of a list of springs, from one of its two arrays of points, into the other where it advances;
 // see list_loop.h.
 typedef void ck_ListStart(const struct ck_ExplicitList *list, int chunk, int now);
 typedef void ck_ListChunk(const struct ck_ExplicitList *list, int chunk, int from, bool advances);
-typedef void ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
-                          uint8_t *near);
+typedef bool ck_NearChunk(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count);
 // A wave of interleaved sweeps; see constraint_loop.h.
 typedef void ck_ProjectionVisits(const struct ck_ProjectedCloth *cloth, const struct ck_Visits *visits);
 // A row's flight to the start of a substep's sweeps, and what surfaces push it by in a sweep, of a contact and of a

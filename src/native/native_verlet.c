@@ -222,7 +222,7 @@ static void advance(const Verlet *verlet, uint32_t substeps) {
     if (verlet->is_whole && !native->contact)
         ck_explicit_step(native->springs, substeps, native->waves);
     else if (verlet->is_whole)
-        for (uint32_t i = 0; i < substeps; i++) ck_verlet_contact_substep(verlet->contact, native, native->springs);
+        ck_verlet_contact_step(verlet->contact, native, native->springs, substeps);
     else
         for (uint32_t i = 0; i < substeps; i++) alone(native);
 }

@@ -8,8 +8,7 @@
 
 struct ck_VerletContact {
     ck_NearSurface *surfaces; // [colliders]
-    ck_Near *near;            // [n]
-    ck_Loose loose;           // of them
+    ck_Loose loose;
     double *state;
 };
 
@@ -17,11 +16,12 @@ struct ck_VerletContact {
 static bool allocate(ck_VerletContact *contact, int colliders, int particles) {
     const long stride = ((long)particles / CK_STRIPE + 1) * CK_STRIPE;
     contact->surfaces = calloc((size_t)colliders, sizeof *contact->surfaces);
-    contact->near = malloc((size_t)particles * sizeof *contact->near);
+    contact->loose.place = malloc((size_t)particles * sizeof *contact->loose.place);
     contact->state = calloc(19 * (size_t)stride, sizeof *contact->state);
     double *state = contact->state;
     if (state)
-        contact->loose = (ck_Loose){.stride = stride,
+        contact->loose = (ck_Loose){.place = contact->loose.place,
+                                    .stride = stride,
                                     .x = state,
                                     .v = state + 3 * stride,
                                     .a = state + 6 * stride,
@@ -31,7 +31,7 @@ static bool allocate(ck_VerletContact *contact, int colliders, int particles) {
                                     .curvature = state + 14 * stride,
                                     .friction = state + 15 * stride,
                                     .normal = state + 16 * stride};
-    return contact->surfaces && contact->near && state;
+    return contact->surfaces && contact->loose.place && state;
 }
 
 ck_Status ck_verlet_contact_create(ck_VerletContact **out, const ck_Native *native, ck_Error *error) {
@@ -49,7 +49,7 @@ ck_Status ck_verlet_contact_create(ck_VerletContact **out, const ck_Native *nati
 void ck_verlet_contact_destroy(ck_VerletContact *contact) {
     if (!contact) return;
     free(contact->surfaces);
-    free(contact->near);
+    free(contact->loose.place);
     free(contact->state);
     free(contact);
 }
@@ -80,9 +80,10 @@ static void follow_alone(const ck_Loose *loose, ck_Contact *contact) {
     }
 }
 
-static void kick_alone(const ck_Loose *loose, const ck_Contact *contact) {
+// So many, which were there before others came to be near.
+static void kick_alone(const ck_Loose *loose, const ck_Contact *contact, int count) {
     const long stride = loose->stride;
-    for (int i = 0; i < loose->count; i++) {
+    for (int i = 0; i < count; i++) {
         double x[3], v[3], predicted[3], a[3], left[3];
         if (!(loose->is_alone[i] > 0)) continue;
         take_one(x, loose->x, stride, i);
@@ -95,30 +96,45 @@ static void kick_alone(const ck_Loose *loose, const ck_Contact *contact) {
     }
 }
 
-// What fills the last vector up weighs nothing.
-static void weigh(const ck_VerletContact *contact, const ck_Model *model) {
-    const ck_Loose *loose = &contact->loose;
-    for (int i = 0; i < loose->count; i++) loose->mass[i] = model->mass[contact->near[i].particle];
-    for (long i = loose->count; i % CK_STRIPE; i++) loose->mass[i] = 0;
+// The first half of a substep of what is loose. True where any is left alone.
+static bool slide(ck_VerletContact *own, ck_Native *native, ck_Explicit *body) {
+    ck_Contact *contact = native->contact;
+    ck_Loose *loose = &own->loose;
+    const ck_Touched touch = {own->surfaces, native->model->collider_count, native->dt, contact->slack};
+    // what fills the last vector up weighs nothing
+    for (int i = loose->count; i % CK_STRIPE; i++) loose->mass[i] = 0;
+    contact->elapsed = native->dt;
+    const unsigned others = ck_native_doubles(native)->touch_slide(&touch, loose, contact->impulse);
+    if (others & CK_SOME_ALONE) follow_alone(loose, contact);
+    ck_explicit_put(body, loose, false);
+    if (others & CK_SOME_LEAVE) ck_explicit_leave(body, loose);
+    return others & CK_SOME_ALONE;
 }
 
-void ck_verlet_contact_substep(ck_VerletContact *own, ck_Native *native, ck_Explicit *body) {
+static void drift(ck_VerletContact *own, ck_Native *native, ck_Explicit *body) {
     ck_Contact *contact = native->contact;
-    const ck_Model *model = native->model;
-    const ck_Loops *loops = ck_native_doubles(native);
-    ck_Loose *loose = &own->loose;
     if (contact->motion) ck_contact_follow(contact, ck_native_time(native));
     if (contact->motion || !native->done) ck_near_surfaces(own->surfaces, contact);
-    const ck_Touched touch = {own->surfaces, model->collider_count, native->dt, contact->slack};
-    if (!ck_explicit_drift(body, own->surfaces, model->collider_count, own->near, loose)) weigh(own, model);
-    contact->elapsed = native->dt;
-    const bool any_alone = loops->touch_slide(&touch, loose, contact->impulse);
-    if (any_alone) follow_alone(loose, contact);
-    ck_explicit_put(body, own->near, loose, false);
-    native->done++;
-    ck_explicit_kick(body);
-    ck_explicit_take(body, own->near, loose);
-    loops->touch_hold(native->dt, loose);
-    if (any_alone) kick_alone(loose, contact);
-    ck_explicit_put(body, own->near, loose, true);
+    ck_explicit_drift(body, own->surfaces, native->model->collider_count, &own->loose);
+}
+
+void ck_verlet_contact_step(ck_VerletContact *own, ck_Native *native, ck_Explicit *body, uint32_t substeps) {
+    const ck_Contact *contact = native->contact;
+    ck_Loose *loose = &own->loose;
+    bool has_started = false;
+    for (uint32_t i = 1; i <= substeps; i++) {
+        if (!has_started) drift(own, native, body);
+        const bool any_alone = slide(own, native, body);
+        const int before = loose->count;
+        native->done++;
+        // what moves is somewhere else in the next substep, and what is alone still asks where it has been
+        has_started = i < substeps && !contact->motion;
+        if (has_started)
+            ck_explicit_turn(body, own->surfaces, native->model->collider_count, loose);
+        else
+            ck_explicit_kick(body, loose);
+        ck_native_doubles(native)->touch_hold(native->dt, loose);
+        if (any_alone) kick_alone(loose, contact, before);
+        if (!has_started) ck_explicit_put(body, loose, true);
+    }
 }

@@ -13,7 +13,7 @@ ck_Status ck_verlet_contact_create(ck_VerletContact **contact, const ck_Native *
 // Accepts NULL.
 void ck_verlet_contact_destroy(ck_VerletContact *contact);
 
-// One substep of cloth, which holds the state of native.
-void ck_verlet_contact_substep(ck_VerletContact *contact, ck_Native *native, ck_Explicit *cloth);
+// As many substeps of cloth, which holds the state of native.
+void ck_verlet_contact_step(ck_VerletContact *contact, ck_Native *native, ck_Explicit *cloth, uint32_t substeps);
 
 #endif

@@ -11,10 +11,12 @@ typedef struct ck_ExplicitKind {
     const double *(*acceleration)(const ck_Explicit *body, size_t *count);
     void (*destroy)(ck_Explicit *body);
     void (*step)(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
-    bool (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Near *near, ck_Loose *loose);
+    void (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose);
+    void (*turn)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose);
     void (*kick)(ck_Explicit *body);
-    void (*take)(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose);
-    void (*put)(const ck_Explicit *body, const ck_Near *near, const ck_Loose *loose, bool is_kicked);
+    void (*take)(const ck_Explicit *body, const ck_Loose *loose, int count); // accelerations of the first ones
+    void (*put)(const ck_Explicit *body, const ck_Loose *loose, bool is_kicked);
+    void (*leave)(ck_Explicit *body, const ck_Loose *loose, int which); // one is loose no longer
     void (*read)(const ck_Explicit *body, double *position, double *velocity);
 } ck_ExplicitKind;
 
@@ -24,23 +26,9 @@ extern const ck_ExplicitKind ck_explicit_rows, ck_explicit_list;
 extern const ck_ExplicitKind ck_explicit_rows_single;
 #endif
 
-// The near particles of a row or a chunk in the last substep, of which so many are loose, from the first on.
-typedef struct ck_NearPart {
-    int first, count; // first −1: none is kept
-} ck_NearPart;
-
-// True where a part's marks, [size], are those of the last substep and its particles stand where they stood: then what
-// is loose of them is their state. Else notes the marks.
-//   size  bytes
-CK_INLINE bool ck_near_is_kept(const ck_NearPart *part, int found, const void *marks, void *before, size_t size) {
-    const uint8_t *now = marks;
-    uint8_t *then = before;
-    unsigned differ = part->first != found;
-    for (size_t i = 0; i < size; i++) {
-        differ |= now[i] ^ then[i];
-        then[i] = now[i];
-    }
-    return !differ;
+// Strays beyond which what is loose is taken anew, in the order of its places.
+CK_INLINE bool ck_loose_is_strewn(const ck_Loose *loose) {
+    return loose->strays > 32 + loose->count / 8;
 }
 
 // From a tile's place, or to it, to where the coordinates of loose ones stand so far apart. Read first, as stores might

@@ -121,21 +121,28 @@ void CK_LOOP(ck_list_start)(const struct ck_ExplicitList *list, int chunk, int n
         }
 }
 
-// Into near, of each group of a chunk: a bit for each place that may come to touch a surface within the substep.
+// Marks, of each group of a chunk, the free places that may come to touch a surface within the substep beside those
+// that are marked. True where there are any.
 ck_NearChunk CK_LOOP(ck_near_chunk);
-void CK_LOOP(ck_near_chunk)(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count,
-                            uint8_t *near) {
+bool CK_LOOP(ck_near_chunk)(const struct ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count) {
+    unsigned any = 0;
     for (long group = list->springs.chunk_start[chunk]; group < list->springs.chunk_start[chunk + 1]; group++) {
         unsigned bits = 0;
         for (int lane = 0; lane < CK_STRIPE; lane += CK_LANES) {
             const long place = CK_STRIPE * group + lane, tile = ck_tile_of(place);
             const ck_Lanes3 x = ck_points_get(list->x[list->now] + CK_POINT * place),
                             v = ck_lanes3_load(list->v + tile), a = ck_lanes3_load(list->a + tile);
+            const ck_LaneMask is_free = ck_lanes_less((ck_Lanes){0}, ck_lanes_load(list->gain + place));
+            unsigned met = 0;
             for (int k = 0; k < count; k++)
-                bits |=
-                    ck_near_bits(x, v, a, list->dt, &surfaces[k], surfaces[k].is_plane ? CK_NEAR_PLANE : CK_NEAR_SOLID)
-                    << lane;
+                met |=
+                    ck_near_bits(x, v, a, list->dt, &surfaces[k], surfaces[k].is_plane ? CK_NEAR_PLANE : CK_NEAR_SOLID);
+            bits |= (met & ck_lanes_bits(is_free)) << lane;
         }
-        near[group] = (uint8_t)bits;
+        bits &= ~(unsigned)list->near[group];
+        list->found[group] = (uint8_t)bits;
+        list->near[group] |= (uint8_t)bits;
+        any |= bits;
     }
+    return any;
 }

@@ -23,8 +23,9 @@ typedef struct ck_ExplicitList {
     double *load;                // tiles: what pulls whatever happens, N
     double *gain;                // [places] m/s a substep for each N: dt/m where free, else 0
     double *resistance;          // [places] N·s/m of drag
-    uint8_t *near, *near_before; // [groups] a bit for each place that may touch
-    ck_NearPart *parts;          // [chunks]
+    double *mass;                // [places] kg
+    uint8_t *near, *found;       // [groups] a bit for each free place that is loose; that is new among them
+    bool is_placed;              // where nothing is loose yet
     double *state;
 } ck_ExplicitList;
 

@@ -72,6 +72,14 @@ CK_INLINE ck_LaneMask ck_near_far(ck_Lanes3 x, ck_Lanes most, const ck_LaneSurfa
                                   : ck_lanes_less(reach * reach, ck_lanes3_dot(out, out));
 }
 
+CK_INLINE ck_LaneMask ck_near_is_far(ck_Lanes3 x, ck_Lanes most, const ck_LaneSurface *surface) {
+    switch (ck_near_shape(surface)) {
+    case CK_NEAR_PLANE: return ck_near_far(x, most, surface, CK_NEAR_PLANE);
+    case CK_NEAR_BALL: return ck_near_far(x, most, surface, CK_NEAR_BALL);
+    default: return ck_near_far(x, most, surface, CK_NEAR_SOLID);
+    }
+}
+
 // A bit for each that a surface may be in reach of.
 CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_LaneSurface *surface,
                                 const ck_NearShape shape) {

@@ -20,14 +20,15 @@ typedef struct ck_ExplicitCloth {
     uint32_t substeps; // of this call
     // tiles; v, between substeps of a call, is half a substep ahead
     double size, origin[3]; // m, of the cloth; and, of x; 0 but in single precision
+    double mass;            // kg
     ck_Real *x, *v, *predicted;
     ck_Real *a;    // acceleration at the end of a call, else the springs' forces from above so far
     ck_Real *gain; // m/s a substep for each N: dt/m where free, else 0
     ck_Real *paired, *far_paired;
     const ck_LaneSurface *surfaces; // of this substep
     ck_LaneSurface *seen;           // [colliders] room for them in single precision
-    ck_Marks *near, *near_before;   // [span] of a row, [rows*span]: those that may touch
-    ck_NearPart *parts;             // [rows]
+    ck_Marks *near, *found;         // [rows*span] the free that are loose; [span] what is new among a row's
+    bool is_placed;                 // where nothing is loose yet
     ck_Real *x_left, *v_left;       // tiles, in single precision: of what was near, where x's and v's digits end
     ck_Real *state, *pairs, *left;
 } ck_ExplicitCloth;

@@ -270,10 +270,19 @@ CK_INLINE void put_group(const ck_Touched *touch, const ck_Loose *loose, int at,
         sum, ck_lanes3_add(ck_lanes3_load(sum), ck_lanes3_choose(is_done, gained, (ck_Lanes3){none, none, none})));
 }
 
-// Of those left alone, the ones that fly by the acceleration that they have. True where others are left.
-static __attribute__((noinline)) bool fly_alone(const ck_Touched *touch, const ck_Loose *loose) {
+// 1 for each that no surface is in reach of.
+CK_INLINE ck_Lanes find_far(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a) {
+    const ck_Lanes none = {0}, most = ck_near_most(v, a, touch->dt);
+    ck_Lanes far = ck_lanes_all(1);
+    for (int k = 0; k < touch->count; k++)
+        far = ck_lanes_choose(ck_near_is_far(x, most, &touch->surfaces[k]), far, none);
+    return far;
+}
+
+// Of those left alone, the ones that fly by the acceleration that they have.
+static __attribute__((noinline)) unsigned fly_alone(const ck_Touched *touch, const ck_Loose *loose) {
     const ck_Lanes none = {0}, dt = ck_lanes_all(touch->dt);
-    ck_Lanes left = none;
+    ck_Lanes left = none, leaving = none;
     for (int at = 0; at < loose->count; at += CK_LANES) {
         const ck_Lanes alone = ck_lanes_load(loose->is_alone + at);
         if (!ck_lanes_any_beyond(alone, 0)) continue;
@@ -281,18 +290,20 @@ static __attribute__((noinline)) bool fly_alone(const ck_Touched *touch, const c
                         v = ck_lanes3_load_apart(loose->v + at, loose->stride),
                         a = ck_lanes3_load_apart(loose->a + at, loose->stride),
                         predicted = ck_lanes3_load_apart(loose->predicted + at, loose->stride);
-        const ck_Lanes flying = alone * find_flying(touch, x, v, a);
+        const ck_Lanes flying = alone * find_flying(touch, x, v, a), far = flying * find_far(touch, x, v, a);
         const ck_LaneMask flies = ck_lanes_less(none, flying);
         const ck_Lanes3 half = ck_lanes3_add_scaled(v, 0.5 * dt, a), faster = ck_lanes3_add_scaled(v, dt, a);
-        ck_lanes_store(loose->is_alone + at, alone - flying);
+        ck_lanes_store(loose->is_alone + at, alone - flying - far);
         ck_lanes3_store_apart(loose->x + at, loose->stride,
                               ck_lanes3_choose(flies, ck_lanes3_add_scaled(x, dt, half), x));
         ck_lanes3_store_apart(loose->v + at, loose->stride, ck_lanes3_choose(flies, half, v));
         ck_lanes3_store_apart(loose->predicted + at, loose->stride, ck_lanes3_choose(flies, faster, predicted));
         // what fills the last vector up weighs nothing
-        left += ck_lanes_choose(ck_lanes_less(none, ck_lanes_load(loose->mass + at)), alone - flying, none);
+        const ck_LaneMask is_there = ck_lanes_less(none, ck_lanes_load(loose->mass + at));
+        left += ck_lanes_choose(is_there, alone - flying, none);
+        leaving += ck_lanes_choose(is_there, far, none);
     }
-    return ck_lanes_any_beyond(left, 0);
+    return (ck_lanes_any_beyond(left, 0) ? CK_SOME_ALONE : 0) | (ck_lanes_any_beyond(leaving, 0) ? CK_SOME_LEAVE : 0);
 }
 
 enum { TOGETHER = 4 };
@@ -311,7 +322,7 @@ CK_INLINE void pass(const ck_Touched *touch, Group *groups, int count) {
 }
 
 ck_TouchSlide CK_LOOP(ck_touch_slide);
-bool CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, double *impulse) {
+unsigned CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, double *impulse) {
     const ck_Loose local = *all, *loose = &local;
     const ck_Lanes none = {0};
     double sums[3 * CK_STRIPE] = {0};
@@ -333,7 +344,7 @@ bool CK_LOOP(ck_touch_slide)(const ck_Touched *touch, const ck_Loose *all, doubl
         for (int lane = 0; lane < CK_STRIPE; lane++) impulse[axis] += sums[axis * CK_STRIPE + lane];
     // what is no number is alone, too
     const bool any_alone = ck_lanes_bits(ck_lanes_less(alone, 0.5 * ck_lanes_all(1))) != (1u << CK_LANES) - 1;
-    return any_alone && fly_alone(touch, loose);
+    return any_alone ? fly_alone(touch, loose) : 0;
 }
 
 ck_TouchHold CK_LOOP(ck_touch_hold);
