@@ -220,13 +220,16 @@ static void fly(double *x, double *v, const double *a, double time) {
     ck_add_scaled(v, time, a);
 }
 
+// What carries is not hit: a way along it that rounding leads 1e-17 m/s out would fall back at once, and begin anew.
+//   carrier  NULL: nothing does
 static inline __attribute__((always_inline)) const ck_Collider *first_hit(const ck_Contact *contact, const double *x,
                                                                           const double *v, const double *a,
                                                                           double elapsed, const bool moves,
-                                                                          double *time) {
+                                                                          double *time, const ck_Collider *carrier) {
     const ck_Collider *first = NULL;
     for (int i = 0; i < contact->model->collider_count; i++) {
         const ck_Collider *collider = &contact->model->colliders[i];
+        if (collider == carrier) continue;
         Seen seen;
         see(&seen, contact, collider, x, v, a, elapsed, moves);
         double hit = ck_collider_hit(collider, seen.x, seen.v, seen.a, *time, contact->slack);
@@ -284,7 +287,7 @@ static inline __attribute__((always_inline)) void advance(ck_Contact *contact, d
         const double border = carrier ? ck_slide_border_time(carrier, seen.x, seen.v, rest.a) : INFINITY;
         if (stop > fmin(time, border)) ending = CK_GOES_ON;
         time = fmin(time, fmin(stop, border));
-        const ck_Collider *hit = first_hit(contact, x, v, left, elapsed, moves, &time);
+        const ck_Collider *hit = first_hit(contact, x, v, left, elapsed, moves, &time, carrier);
         if (carrier) {
             ck_slide(carrier, seen.x, seen.v, seen.a, rest.a, time, hit ? CK_GOES_ON : ending);
             look_back(&seen, contact, carrier, elapsed + time, moves, x, v);
@@ -341,7 +344,7 @@ static bool jumps(const ck_Contact *contact, const ck_Collider *collider) {
 static inline __attribute__((always_inline)) bool impacts(const ck_Contact *contact, const double *x, const double *v,
                                                           const double *a, const bool moves) {
     double time = contact->dt, normal[3];
-    const ck_Collider *hit = first_hit(contact, x, v, a, 0, moves, &time);
+    const ck_Collider *hit = first_hit(contact, x, v, a, 0, moves, &time, NULL);
     if (!hit) {
         // one that touches already
         for (int i = 0; i < contact->model->collider_count; i++) {

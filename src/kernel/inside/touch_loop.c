@@ -53,9 +53,20 @@ CK_INLINE Surface find_surface(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes wa
     return found;
 }
 
-// 1 for each that touches nothing in all of the substep. A surface lies behind the plane through its next point, across
-// the way to there: what does not come to that plane comes to nothing. Of an edge the plane's direction is known to a
-// place's rounding over the way to there.
+// 1 for each that touches a plane or a ball that stays, and goes from it faster than rounding and out of its reach.
+//   way, end, least  m out of it in the substep, by the speed at the start and in all, and rounding
+CK_INLINE ck_Lanes find_leaving(const ck_Touched *touch, const ck_NearSurface *surface, ck_Lanes gap, ck_Lanes way,
+                                ck_Lanes end, ck_Lanes least) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
+    if (surface->axis_count || surface->moves) return none;
+    const ck_Lanes goes = ck_lanes_choose(ck_lanes_less(least, way), one, none);
+    const ck_Lanes is_out = ck_lanes_choose(ck_lanes_less(least + surface->margin, end), one, none);
+    return ck_lanes_choose(ck_lanes_less(gap, ck_lanes_all(-1e-3 * touch->slack)), none, goes * is_out);
+}
+
+// 1 for each that touches nothing in all of the substep, or leaves it at once and for all of that. A surface lies
+// behind the plane through its next point, across the way to there: what does not come to that plane comes to nothing.
+// Of an edge the plane's direction is known to a place's rounding over the way to there.
 CK_INLINE ck_Lanes find_flying(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a) {
     const ck_Lanes none = {0}, dt = ck_lanes_all(touch->dt), most = ck_near_most(v, a, touch->dt);
     ck_Lanes flying = ck_lanes_all(1);
@@ -67,11 +78,12 @@ CK_INLINE ck_Lanes find_flying(const ck_Touched *touch, ck_Lanes3 x, ck_Lanes3 v
         const ck_Lanes3 out = ck_near_out(surface, x);
         const ck_Lanes gap = surface->is_plane ? ck_lanes3_dot(out, normal) : ck_near_round_gap(out, radius, &normal);
         const ck_Lanes way = dt * ck_lanes3_dot(v, normal), gain = 0.5 * dt * dt * ck_lanes3_dot(a, normal);
-        const ck_Lanes inwards = ck_lanes_choose(ck_lanes_less(way, none), way, none) +
-                                 ck_lanes_choose(ck_lanes_less(gain, none), gain, none);
+        const ck_Lanes end = way + gain, low = ck_lanes_choose(ck_lanes_less(gain, none), end, way);
+        const ck_Lanes inwards = ck_lanes_choose(ck_lanes_less(low, none), low, none);
         ck_Lanes spare = gap + inwards - 1e-9 * most - surface->margin;
         if (!surface->is_plane) spare = spare * (gap + radius) - 1e-15 * most * place;
-        flying = ck_lanes_choose(ck_lanes_less(none, spare), flying, none);
+        const ck_Lanes leaving = find_leaving(touch, surface, gap, way, end, 1e-9 * most);
+        flying = ck_lanes_choose(ck_lanes_less(none, spare), flying, flying * leaving);
     }
     return flying;
 }
@@ -123,23 +135,32 @@ CK_INLINE ck_Lanes3 filter(const Surface *surface, ck_Lanes3 normal, ck_Lanes3 v
     return ck_lanes3_choose(leaves, a, ck_lanes3_choose(is_pressed, held.left, a));
 }
 
-// Not 0 where friction stops or turns a slide within the substep; see stop_time.
-CK_INLINE ck_Lanes ends_within(ck_Lanes friction, ck_Lanes3 v, const Held *held, double dt) {
+// Not 0 where friction stops or turns a slide within a time; see ck_slide_stop_time.
+CK_INLINE ck_Lanes ends_within(ck_Lanes friction, ck_Lanes3 v, const Held *held, ck_Lanes time, double dt) {
     const ck_Lanes none = {0}, one = ck_lanes_all(1);
     const ck_Lanes squared = ck_lanes3_dot(v, v), pushed = ck_lanes3_dot(held->push, held->push);
     // friction·|v| below that
-    const ck_Lanes most = dt * (friction * friction - pushed) - ck_lanes3_dot(v, held->push);
+    const ck_Lanes most = time * (friction * friction - pushed) - ck_lanes3_dot(v, held->push);
     const ck_Lanes below = ck_lanes_choose(ck_lanes_less(friction * friction * squared, most * most), one, none);
     const ck_Lanes stops = ck_lanes_choose(ck_lanes_less(none, most), below, none);
-    const ck_Lanes turns = ck_lanes_choose(ck_lanes_less(squared, -dt * ck_lanes3_dot(v, held->left)), one, none);
-    const ck_Lanes ends = ck_lanes_choose(ck_lanes_less(pushed, friction * friction), stops, turns);
+    const ck_Lanes turns = ck_lanes_choose(ck_lanes_less(squared, -time * ck_lanes3_dot(v, held->left)), one, none);
+    const ck_Lanes rubs = ck_lanes_choose(ck_lanes_less(none, friction), one, none);
+    const ck_Lanes ends = rubs * ck_lanes_choose(ck_lanes_less(pushed, friction * friction), stops, turns);
     return ck_lanes_choose(slides_along(friction, v, dt), ends, none);
 }
 
-// Where a slide is after the substep; on a ball its speed follows from the work done, as work_over has it.
+// When it does, s, of what ends.
+CK_INLINE ck_Lanes ending_time(ck_Lanes friction, ck_Lanes3 v, const Held *held) {
+    const ck_Lanes squared = ck_lanes3_dot(v, v), pushed = ck_lanes3_dot(held->push, held->push);
+    const ck_Lanes speed = squared * inverse_length(squared), f = pushed * inverse_length(pushed);
+    const ck_Lanes stop = (speed * friction + ck_lanes3_dot(v, held->push)) / ((friction - f) * (friction + f));
+    return ck_lanes_choose(held->holds, stop, -squared / ck_lanes3_dot(v, held->left));
+}
+
+// Where a slide is after a time; on a ball its speed follows from the work done, as work_over has it.
 CK_INLINE void slide(const Surface *surface, ck_Lanes3 *x, ck_Lanes3 *v, ck_Lanes3 a, ck_Lanes3 left, ck_Lanes press,
-                     double dt, ck_Lanes3 *normal) {
-    const ck_Lanes none = {0}, one = ck_lanes_all(1), time = ck_lanes_all(dt);
+                     ck_Lanes time, ck_Lanes3 *normal) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
     const ck_LaneMask is_curved = ck_lanes_less(none, surface->curvature);
     const ck_Lanes3 flat = ck_lanes3_scale(time, ck_lanes3_add_scaled(*v, 0.5 * time, left));
     const ck_Lanes3 to = ck_lanes3_add(*x, flat), faster = ck_lanes3_add_scaled(*v, time, left);
@@ -186,6 +207,7 @@ typedef struct Group {
     ck_Lanes3 change; // what acceleration is left at the end
     ck_Lanes3 normal; // of the surface there
     ck_Lanes alone;   // not 0: not done here
+    ck_Lanes ends;    // not 0: a slide ends before the substep does
     Surface surface;  // at the start
     Held held;
     ck_LaneMask goes;
@@ -231,16 +253,53 @@ CK_INLINE void rub(const ck_Touched *touch, Group *group) {
     const Surface *surface = &group->surface;
     const Held held = group->held = hold(surface, surface->normal, group->v, group->a, touch->dt);
     group->alone += ck_lanes_choose(ck_lanes_less(none, held.press), none, one);
-    group->alone += ends_within(surface->friction * held.press, group->v, &held, touch->dt);
+    const ck_Lanes ends =
+        ends_within(surface->friction * held.press, group->v, &held, ck_lanes_all(touch->dt), touch->dt);
+    group->ends = ck_lanes_choose(ck_lanes_less(none, group->alone), none, ends);
     const ck_LaneMask is_deep = ck_lanes_less(depth_of(surface), ck_lanes_all(-1e-3 * touch->slack));
     const ck_Lanes moves =
         ck_lanes_choose(held.holds, ck_lanes3_dot(group->v0, group->v0), one) + ck_lanes_choose(is_deep, one, none);
     group->goes = ck_lanes_less(none, moves);
 }
 
+// On from where friction has ended a slide, to the end of the substep.
+//   from  m/s, at the start of the slide
+static __attribute__((noinline)) void go_on(const ck_Touched *touch, Group *group, ck_Lanes time, ck_Lanes3 from) {
+    const ck_Lanes none = {0}, one = ck_lanes_all(1);
+    const ck_LaneMask ends = ck_lanes_less(none, group->ends);
+    const ck_Lanes3 faster = ck_lanes3_add_scaled(from, time, group->held.left);
+    const ck_Lanes share = ck_lanes3_dot(faster, from) / ck_lanes3_dot(from, from);
+    const ck_Lanes3 turned = ck_near_along(ck_lanes3_subtract_scaled(faster, share, from), group->normal);
+    const ck_Lanes3 ended = ck_lanes3_choose(group->held.holds, (ck_Lanes3){none, none, none}, turned);
+    const ck_Lanes left_time = touch->dt - time;
+    Surface surface = group->surface;
+    surface.normal = group->normal;
+    group->v = ck_lanes3_choose(ends, ended, group->v);
+    const Held held = hold(&surface, surface.normal, group->v, group->a, touch->dt);
+    const ck_Lanes lifts = ck_lanes_choose(ck_lanes_less(none, held.press), none, one);
+    const ck_Lanes again = ends_within(surface.friction * held.press, group->v, &held, left_time, touch->dt);
+    const ck_LaneMask goes =
+        ck_lanes_less(none, group->ends * ck_lanes_choose(held.holds, ck_lanes3_dot(group->v, group->v), one));
+    group->alone += group->ends * (lifts + again);
+    ck_Lanes3 x = group->x, v = group->v, normal;
+    slide(&surface, &x, &v, group->a, held.left, held.press, left_time, &normal);
+    group->x = ck_lanes3_choose(goes, x, group->x);
+    group->v = ck_lanes3_choose(goes, v, group->v);
+    group->normal = ck_lanes3_choose(goes, normal, group->normal);
+}
+
 CK_INLINE void go(const ck_Touched *touch, Group *group) {
     const Held *held = &group->held;
-    slide(&group->surface, &group->x, &group->v, group->a, held->left, held->press, touch->dt, &group->normal);
+    const ck_Lanes3 from = group->v;
+    const bool any_ends = ck_lanes_any_beyond(group->ends, 0);
+    ck_Lanes time = ck_lanes_all(touch->dt);
+    if (any_ends) {
+        const ck_Lanes end = ending_time(group->surface.friction * held->press, from, held);
+        const ck_LaneMask ends = ck_lanes_less((ck_Lanes){0}, group->ends);
+        time = ck_lanes_choose(ends, ck_lanes_choose(ck_lanes_less(end, time), end, time), time);
+    }
+    slide(&group->surface, &group->x, &group->v, group->a, held->left, held->press, time, &group->normal);
+    if (any_ends) go_on(touch, group, time, from);
     group->x = ck_lanes3_choose(group->goes, group->x, group->x0);
     group->v = ck_lanes3_choose(group->goes, group->v, group->v0);
     group->normal = ck_lanes3_choose(group->goes, group->normal, group->surface.normal);
@@ -298,6 +357,12 @@ static __attribute__((noinline)) unsigned fly_alone(const ck_Touched *touch, con
                               ck_lanes3_choose(flies, ck_lanes3_add_scaled(x, dt, half), x));
         ck_lanes3_store_apart(loose->v + at, loose->stride, ck_lanes3_choose(flies, half, v));
         ck_lanes3_store_apart(loose->predicted + at, loose->stride, ck_lanes3_choose(flies, faster, predicted));
+        // nothing is touched at the end, which a last kick asks for
+        for (int axis = 0; axis < 3; axis++) {
+            double *normal = loose->normal + at + axis * loose->stride;
+            ck_lanes_store(normal, ck_lanes_choose(flies, none, ck_lanes_load(normal)));
+        }
+        ck_lanes_store(loose->curvature + at, ck_lanes_choose(flies, none, ck_lanes_load(loose->curvature + at)));
         // what fills the last vector up weighs nothing
         const ck_LaneMask is_there = ck_lanes_less(none, ck_lanes_load(loose->mass + at));
         left += ck_lanes_choose(is_there, alone - flying, none);
