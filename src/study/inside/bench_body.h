@@ -24,7 +24,8 @@ typedef struct ck_BenchBody {
 // 1 m and 0.2 kg in gravity, let go level: k = 1000 N/m along, 500 across. A mesh is a sheet of triangles, each square
 // cut one way or the other and each inner node moved by up to a quarter of a spacing. A ball of 0.3 m holds a cloth by
 // friction alone, which starts as native-verlet has it after 0.6 s, slung around it: an engine that is timed for longer
-// does not meet more of it. A substep is half of the explicit bound without damping, so that every engine steps alike.
+// does not meet more of it. A substep is half of the explicit bound without damping, so that every engine steps alike;
+// what is damped has 0.02 N·s/m a spring, or less where that would narrow the bound down to the substep.
 // Errors: CK_NO_MEMORY. Free with ck_model_free in any case.
 ck_Status ck_bench_body_build(ck_Model *model, const ck_BenchBody *body, bool is_damped, ck_Error *error);
 
