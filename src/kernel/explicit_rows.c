@@ -118,8 +118,8 @@ static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, 
 static void turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     const int before = loose->count;
-    (void)surfaces; // are where they were
     cloth->substeps = 1;
+    see(cloth, surfaces, count);
     for (int row = 0; row < cloth->rows.rows; row++) {
         run_row(cloth, 1, row);
         if (cloth->loops->near_row(cloth, row, count)) take_row(cloth, row, loose);

@@ -351,7 +351,7 @@ static __attribute__((noinline)) unsigned fly_alone(const ck_Touched *touch, con
                         predicted = ck_lanes3_load_apart(loose->predicted + at, loose->stride);
         const ck_Lanes flying = alone * find_flying(touch, x, v, a), far = flying * find_far(touch, x, v, a);
         const ck_LaneMask flies = ck_lanes_less(none, flying);
-        const ck_Lanes3 half = ck_lanes3_add_scaled(v, 0.5 * dt, a), faster = ck_lanes3_add_scaled(v, dt, a);
+        const ck_Lanes3 half = ck_lanes3_add_scaled(v, 0.5 * dt, a), faster = ck_lanes3_add_scaled(half, 0.5 * dt, a);
         ck_lanes_store(loose->is_alone + at, alone - flying - far);
         ck_lanes3_store_apart(loose->x + at, loose->stride,
                               ck_lanes3_choose(flies, ck_lanes3_add_scaled(x, dt, half), x));
