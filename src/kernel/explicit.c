@@ -5,8 +5,10 @@
 static ck_Status create(ck_Explicit **body, const ck_ExplicitKind *kind, const ck_ExplicitSetup *setup,
                         ck_Error *error) {
     ck_Status status = kind->create(body, setup, error);
-    if (!status) (*body)->kind = kind;
-    return status;
+    if (status) return status;
+    (*body)->kind = kind;
+    (*body)->is_placed = true;
+    return CK_OK;
 }
 
 ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error) {
@@ -21,6 +23,7 @@ ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *se
 }
 
 void ck_explicit_place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
+    body->is_placed = true;
     body->kind->place(body, setup);
 }
 
@@ -40,8 +43,18 @@ void ck_explicit_step(ck_Explicit *body, uint32_t substeps, ck_Waves *waves) {
     body->kind->step(body, substeps, waves);
 }
 
+// Strays beyond which what is loose is taken anew, in the order of its places.
+static bool is_strewn(const ck_Loose *loose) {
+    return loose->strays > 32 + loose->count / 8;
+}
+
 void ck_explicit_drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
-    body->kind->drift(body, surfaces, count, loose);
+    const bool is_anew = body->is_placed || is_strewn(loose);
+    if (is_anew) loose->count = 0;
+    const int before = loose->count;
+    body->kind->drift(body, surfaces, count, loose, is_anew);
+    loose->strays = is_anew ? 0 : loose->strays + loose->count - before;
+    body->is_placed = false;
 }
 
 void ck_explicit_kick(ck_Explicit *body, ck_Loose *loose) {
@@ -53,6 +66,7 @@ void ck_explicit_turn(ck_Explicit *body, const ck_NearSurface *surfaces, int cou
     const int before = loose->count;
     body->kind->turn(body, surfaces, count, loose);
     body->kind->take(body, loose, before);
+    loose->strays += loose->count - before;
 }
 
 void ck_explicit_put(const ck_Explicit *body, const ck_Loose *loose, bool is_kicked) {

@@ -21,7 +21,7 @@ typedef struct ck_ExplicitSetup {
 } ck_ExplicitSetup;
 
 // In rows where the model is a regular cloth, else as a list, whatever springs it has. What air, hinges, driven pins
-// and rigid bodies do is left out: see ck_explicit_pull. Memory: rows 13 doubles a particle; lists 27, and 1 to 9 a
+// and rigid bodies do is left out: see ck_explicit_pull. Memory: rows 13 doubles a particle; lists 28, and 1 to 9 a
 // spring. Errors: CK_NO_MEMORY; CK_REFUSED for a list beyond CK_MOST_LISTED. Free with ck_explicit_destroy.
 ck_Status ck_explicit_create(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
 ck_Status ck_explicit_create_list(ck_Explicit **body, const ck_ExplicitSetup *setup, ck_Error *error);
@@ -53,7 +53,7 @@ void ck_explicit_turn(ck_Explicit *body, const ck_NearSurface *surfaces, int cou
 // What is made of them: before a kick place and predicted velocity, after the last one their velocity.
 void ck_explicit_put(const ck_Explicit *body, const ck_Loose *loose, bool is_kicked);
 
-// Before a kick, after that: those that are alone below 0 are loose no longer.
+// After they are put before a kick: those that no surface was in reach of, alone below 0, are loose no longer.
 void ck_explicit_leave(ck_Explicit *body, ck_Loose *loose);
 
 // The accelerations at the end of the last call, as the layout has them, with 0 for what is not free; [count] m/s².

@@ -64,36 +64,26 @@ static void take_chunk(const ck_ExplicitList *list, int chunk, ck_Loose *loose) 
         }
 }
 
-static void begin(ck_ExplicitList *list, ck_Loose *loose) {
-    loose->count = loose->strays = 0;
-    memset(list->near, 0, (size_t)(list->springs.places / CK_STRIPE));
-}
-
 static void start_chunk(ck_ExplicitList *list, int chunk, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
     if (list->loops->near_chunk(list, chunk, surfaces, count)) take_chunk(list, chunk, loose);
     run_chunk(list, 0, chunk);
 }
 
-static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose, bool is_anew) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
-    const bool is_new = list->is_placed || ck_loose_is_strewn(loose);
-    if (is_new) begin(list, loose);
-    const int before = loose->count;
+    if (is_anew) memset(list->near, 0, (size_t)(list->springs.places / CK_STRIPE));
     for (int chunk = 0; chunk < list->springs.chunks; chunk++) start_chunk(list, chunk, surfaces, count, loose);
-    loose->strays += is_new ? 0 : loose->count - before;
-    list->is_placed = false;
 }
 
 // A chunk's springs lead to the one before, which so starts when both are done.
 static void turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
     ck_ExplicitList *list = (ck_ExplicitList *)body;
-    const int before = loose->count, chunks = list->springs.chunks;
+    const int chunks = list->springs.chunks;
     list->substeps = 1;
     for (int chunk = 0; chunk <= chunks; chunk++) {
         if (chunk < chunks) run_chunk(list, 1, chunk);
         if (chunk > 0) start_chunk(list, chunk - 1, surfaces, count, loose);
     }
-    loose->strays += loose->count - before;
 }
 
 static void take(const ck_Explicit *body, const ck_Loose *loose, int count) {
@@ -203,7 +193,6 @@ static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
         for (int axis = 0; axis < 3; axis++) load[axis] *= model->mass[i];
         ck_tile_put(list->load + ck_tile_of(at), load, 1);
     }
-    list->is_placed = true;
     pace(body, setup);
     scatter_points(list, list->x[list->now], setup->position);
     scatter_points(list, list->predicted[list->now], setup->velocity);

@@ -96,35 +96,24 @@ static void see(ck_ExplicitCloth *cloth, const ck_NearSurface *surfaces, int cou
 #endif
 }
 
-static void begin(ck_ExplicitCloth *cloth, ck_Loose *loose) {
-    loose->count = loose->strays = 0;
-    memset(cloth->near, 0, sizeof *cloth->near * (size_t)(cloth->rows.rows * cloth->rows.span));
-}
-
-static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
+static void drift(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose, bool is_anew) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    const bool is_new = cloth->is_placed || ck_loose_is_strewn(loose);
     see(cloth, surfaces, count);
-    if (is_new) begin(cloth, loose);
-    const int before = loose->count;
+    if (is_anew) memset(cloth->near, 0, sizeof *cloth->near * (size_t)(cloth->rows.rows * cloth->rows.span));
     // row by row, so that what one step has read the next finds in the cache
     for (int row = 0; row < cloth->rows.rows; row++)
         if (cloth->loops->near_row(cloth, row, count)) take_row(cloth, row, loose);
-    loose->strays += is_new ? 0 : loose->count - before;
-    if (is_new) forget_left(cloth);
-    cloth->is_placed = false;
+    if (is_anew) forget_left(cloth);
 }
 
 static void turn(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
-    const int before = loose->count;
     cloth->substeps = 1;
     see(cloth, surfaces, count);
     for (int row = 0; row < cloth->rows.rows; row++) {
         run_row(cloth, 1, row);
         if (cloth->loops->near_row(cloth, row, count)) take_row(cloth, row, loose);
     }
-    loose->strays += loose->count - before;
 }
 
 static void take(const ck_Explicit *body, const ck_Loose *all, int count) {
@@ -214,7 +203,6 @@ static void tell_left(const ck_ExplicitCloth *cloth, const ck_ExplicitSetup *set
 static void place(ck_Explicit *body, const ck_ExplicitSetup *setup) {
     ck_ExplicitCloth *cloth = (ck_ExplicitCloth *)body;
     if (CK_IS_SINGLE) memcpy(cloth->origin, setup->position, sizeof cloth->origin);
-    cloth->is_placed = true;
     ck_rows_load(&cloth->rows, cloth->x, setup->position, cloth->origin);
     ck_rows_load(&cloth->rows, cloth->predicted, setup->velocity, none);
     pace(body, setup);

@@ -10,17 +10,18 @@ struct ck_VerletContact {
     ck_NearSurface *surfaces; // [colliders]
     ck_Loose loose;
     double *state;
+    long *places;
 };
 
 // Room for so many and the end of a vector.
 static bool allocate(ck_VerletContact *contact, int colliders, int particles) {
     const long stride = ((long)particles / CK_STRIPE + 1) * CK_STRIPE;
     contact->surfaces = calloc((size_t)colliders, sizeof *contact->surfaces);
-    contact->loose.place = malloc((size_t)particles * sizeof *contact->loose.place);
     contact->state = calloc(19 * (size_t)stride, sizeof *contact->state);
+    contact->places = calloc((size_t)stride, sizeof *contact->places);
     double *state = contact->state;
     if (state)
-        contact->loose = (ck_Loose){.place = contact->loose.place,
+        contact->loose = (ck_Loose){.place = contact->places,
                                     .stride = stride,
                                     .x = state,
                                     .v = state + 3 * stride,
@@ -31,7 +32,7 @@ static bool allocate(ck_VerletContact *contact, int colliders, int particles) {
                                     .curvature = state + 14 * stride,
                                     .friction = state + 15 * stride,
                                     .normal = state + 16 * stride};
-    return contact->surfaces && contact->loose.place && state;
+    return contact->surfaces && contact->places && state;
 }
 
 ck_Status ck_verlet_contact_create(ck_VerletContact **out, const ck_Native *native, ck_Error *error) {
@@ -49,7 +50,7 @@ ck_Status ck_verlet_contact_create(ck_VerletContact **out, const ck_Native *nati
 void ck_verlet_contact_destroy(ck_VerletContact *contact) {
     if (!contact) return;
     free(contact->surfaces);
-    free(contact->loose.place);
+    free(contact->places);
     free(contact->state);
     free(contact);
 }

@@ -11,7 +11,8 @@ typedef struct ck_ExplicitKind {
     const double *(*acceleration)(const ck_Explicit *body, size_t *count);
     void (*destroy)(ck_Explicit *body);
     void (*step)(ck_Explicit *body, uint32_t substeps, ck_Waves *waves);
-    void (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose);
+    // anew: nothing is loose yet
+    void (*drift)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose, bool is_anew);
     void (*turn)(ck_Explicit *body, const ck_NearSurface *surfaces, int count, ck_Loose *loose);
     void (*kick)(ck_Explicit *body);
     void (*take)(const ck_Explicit *body, const ck_Loose *loose, int count); // accelerations of the first ones
@@ -25,11 +26,6 @@ extern const ck_ExplicitKind ck_explicit_rows, ck_explicit_list;
 #ifndef CK_SINGLE
 extern const ck_ExplicitKind ck_explicit_rows_single;
 #endif
-
-// Strays beyond which what is loose is taken anew, in the order of its places.
-CK_INLINE bool ck_loose_is_strewn(const ck_Loose *loose) {
-    return loose->strays > 32 + loose->count / 8;
-}
 
 // From a tile's place, or to it, to where the coordinates of loose ones stand so far apart. Read first, as stores might
 // be to where the rest is.
@@ -50,6 +46,7 @@ CK_INLINE void ck_tile_put(ck_Real *tile, const double *from, long stride) {
 // The first member of every layout's own structure.
 struct ck_Explicit {
     const ck_ExplicitKind *kind;
+    bool is_placed; // since what was loose was taken
 };
 
 #endif

@@ -25,7 +25,6 @@ typedef struct ck_ExplicitList {
     double *resistance;          // [places] N·s/m of drag
     double *mass;                // [places] kg
     uint8_t *near, *found;       // [groups] a bit for each free place that is loose; that is new among them
-    bool is_placed;              // where nothing is loose yet
     double *state;
 } ck_ExplicitList;
 

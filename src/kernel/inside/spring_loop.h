@@ -28,7 +28,6 @@ typedef struct ck_ExplicitCloth {
     const ck_LaneSurface *surfaces; // of this substep
     ck_LaneSurface *seen;           // [colliders] room for them in single precision
     ck_Marks *near, *found;         // [rows*span] the free that are loose; [span] what is new among a row's
-    bool is_placed;                 // where nothing is loose yet
     ck_Real *x_left, *v_left;       // tiles, in single precision: of what was near, where x's and v's digits end
     ck_Real *state, *pairs, *left;
 } ck_ExplicitCloth;
