@@ -121,12 +121,13 @@ static ck_Status let_fall(ck_Model *model, ck_Error *error) {
     const ck_Settings wanted = {.substeps = CK_BENCH_SUBSTEPS};
     ck_Settings used;
     void *state;
-    const ck_Status status = ck_engine_create(engine, &state, model, &wanted, &used, NULL, error);
+    ck_Status status = ck_engine_create(engine, &state, model, &wanted, &used, NULL, error);
     if (status) return status;
-    for (double time = 0; time < FALL; time += model->step) engine->step(state);
+    for (double time = 0; time < FALL && !status; time += model->step)
+        if (engine->step(state) != CK_STEP_OK) status = ck_fail(error, CK_REFUSED, "does not come down on its ball");
     engine->read(state, model->position, model->velocity);
     engine->destroy(state);
-    return CK_OK;
+    return status;
 }
 
 ck_Status ck_bench_body_build(ck_Model *model, const ck_BenchBody *body, bool is_damped, ck_Error *error) {

@@ -26,7 +26,7 @@ typedef struct ck_BenchBody {
 // friction alone, which starts as native-verlet has it after 0.6 s, slung around it: an engine that is timed for longer
 // does not meet more of it. A substep is half of the explicit bound without damping, so that every engine steps alike;
 // what is damped has 0.02 N·s/m a spring, or less where that would narrow the bound down to the substep.
-// Errors: CK_NO_MEMORY. Free with ck_model_free in any case.
+// Errors: CK_NO_MEMORY; CK_REFUSED where native-verlet diverges on the way there. Free with ck_model_free in any case.
 ck_Status ck_bench_body_build(ck_Model *model, const ck_BenchBody *body, bool is_damped, ck_Error *error);
 
 #endif
