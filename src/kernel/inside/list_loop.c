@@ -133,10 +133,9 @@ bool CK_LOOP(ck_near_chunk)(const struct ck_ExplicitList *list, int chunk, const
             const ck_Lanes3 x = ck_points_get(list->x[list->now] + CK_POINT * place),
                             v = ck_lanes3_load(list->v + tile), a = ck_lanes3_load(list->a + tile);
             const ck_LaneMask is_free = ck_lanes_less((ck_Lanes){0}, ck_lanes_load(list->gain + place));
+            const ck_Lanes most = ck_near_most(v, a, list->dt);
             unsigned met = 0;
-            for (int k = 0; k < count; k++)
-                met |=
-                    ck_near_bits(x, v, a, list->dt, &surfaces[k], surfaces[k].is_plane ? CK_NEAR_PLANE : CK_NEAR_SOLID);
+            for (int k = 0; k < count; k++) met |= ck_near_bits(ck_near_is_far(x, most, &surfaces[k]));
             bits |= (met & ck_lanes_bits(is_free)) << lane;
         }
         bits &= ~(unsigned)list->near[group];

@@ -80,10 +80,8 @@ CK_INLINE ck_LaneMask ck_near_is_far(ck_Lanes3 x, ck_Lanes most, const ck_LaneSu
     }
 }
 
-// A bit for each that a surface may be in reach of.
-CK_INLINE unsigned ck_near_bits(ck_Lanes3 x, ck_Lanes3 v, ck_Lanes3 a, double substep, const ck_LaneSurface *surface,
-                                const ck_NearShape shape) {
-    const ck_LaneMask is_far = ck_near_far(x, ck_near_most(v, a, substep), surface, shape);
+// A bit for each that is not far.
+CK_INLINE unsigned ck_near_bits(ck_LaneMask is_far) {
     return ~ck_lanes_bits(is_far) & ((1u << CK_LANES) - 1);
 }
 

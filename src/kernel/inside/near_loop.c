@@ -3,7 +3,7 @@
 #include "spring_loop.h"
 
 // Starts the substep of some, as explicit_start has it, but of those near a surface, which stay. A bit for each of
-// these that is free. What has been near is where its speed is not, and counts for nothing here.
+// these that is free. The speed of what is loose is kept there, and what is made of the one here is overwritten.
 CK_INLINE unsigned start(const ck_ExplicitCloth *cloth, ck_Place at, int count, bool predicts) {
     const long tile = at.tile;
     const ck_Lanes dt = ck_lanes_all(cloth->dt), half = ck_lanes_all((ck_Real)0.5 * cloth->dt);

@@ -56,7 +56,7 @@ CK_INLINE unsigned may_hit(const ck_Touched *touch, const ck_NearSurface *surfac
         gain =
             ck_lanes3_subtract_scaled(gain, ck_lanes_all(touch->dt * touch->dt), ck_lanes3_all(surface->acceleration));
     }
-    const unsigned near = ck_near_bits(x, way, gain, 1, surface, shape);
+    const unsigned near = ck_near_bits(ck_near_far(x, ck_near_most(way, gain, 1), surface, shape));
     // whose speed jumps, anything may meet
     if (!near || is_sharp(surface) || surface->margin == INFINITY) return near;
     ck_Lanes3 normal = ck_lanes3_all(surface->normal);

@@ -33,14 +33,9 @@ CK_INLINE ck_Doubles ck_doubles_of(const float *singles) {
 //   way, gain  m: of a way from there, speed at its start times dt, and field times dt²
 CK_INLINE unsigned ck_lanes_meet(const ck_ProjectionHead *head, ck_Lanes3 x, ck_Lanes3 way, ck_Lanes3 gain) {
     unsigned bits = 0;
-    for (int k = 0; k < head->contact->touched.count; k++) {
-        const ck_LaneSurface *surface = &head->seen[k];
-        switch (ck_near_shape(surface)) {
-        case CK_NEAR_PLANE: bits |= ck_near_bits(x, way, gain, 1, surface, CK_NEAR_PLANE); break;
-        case CK_NEAR_BALL: bits |= ck_near_bits(x, way, gain, 1, surface, CK_NEAR_BALL); break;
-        default: bits |= ck_near_bits(x, way, gain, 1, surface, CK_NEAR_SOLID); break;
-        }
-    }
+    const ck_Lanes most = ck_near_most(way, gain, 1);
+    for (int k = 0; k < head->contact->touched.count; k++)
+        bits |= ck_near_bits(ck_near_is_far(x, most, &head->seen[k]));
     return bits;
 }
 
